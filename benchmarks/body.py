@@ -19,10 +19,9 @@ from virtual_bodies.trials import (
     virtual_trial,
 )
 
-from capar.body.capture_fitting import fit_refined
-from capar.body.fitting import fit
 from capar.body.human import Human
-from capar.body.mounting import calibrate
+from capar.body.sensor_fitting import fit, fit_refined
+from capar.body.sensors import calibrate
 
 ON_THE_MARKS = (np.zeros(3), 0.0)
 

@@ -8,8 +8,7 @@ import sys
 import numpy as np
 from virtual_bodies.sizes import LIMBS, PEOPLE, READY
 
-from capar.body.anthropometry import Measures, ready_made
-from capar.body.data_files import table
+from capar.body.anthropometry import Measures, ready_made, table
 from capar.body.gaze import look_at
 from capar.body.human import Human
 

@@ -16,7 +16,7 @@ from virtual_bodies.looking import Fixation, fixations, share_told
 
 from capar.body.recording import record
 from capar.body.scripted_actions import ACTIONS, performed
-from capar.body.sensing import PERFECT, Tracker
+from capar.body.sensors import PERFECT, Tracker
 
 
 def line(found: Sequence[Fixation]) -> str:

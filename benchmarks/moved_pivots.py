@@ -19,7 +19,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from capar.evaluation.evaluations import report
+from capar.evaluation.metrics import report
 from capar.evaluation.plan import Plan, read_plan
 from capar.evaluation.scoring import Case, compare, read_case_labels
 from capar.model.capture import Capture, Stream

@@ -11,11 +11,11 @@ from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.performing import perform
 from capar.body.recording import record
+from capar.body.scenes import Scene as Things
+from capar.body.scenes import Thing, scene
 from capar.body.scripted_actions import action_scene
 from capar.body.scripts import touch
-from capar.body.sensing import PERFECT
-from capar.body.things import Scene as Things
-from capar.body.things import Thing, scene
+from capar.body.sensors import PERFECT
 from capar.model.capture import Shape, TagType
 from capar.pipelines.round_trips import body, observed_source
 from capar.regeneration.drafts import Draft

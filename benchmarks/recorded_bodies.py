@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from capar.body.fitting import Fit
-from capar.body.whole_bodies import fit_body, ground
+from capar.body.body_fitting import fit_body, ground
+from capar.body.sensor_fitting import Fit
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.drafting.draft import draft
 from extractors.readers.registry import read_recording

@@ -11,9 +11,8 @@ from pathlib import Path
 from spoken_worlds import RATE_HZ, Spoken, spoken, understood, world
 
 from capar.body.anthropometry import ready_made
-from capar.body.bundles import write_bundle
 from capar.body.human import Human
-from capar.body.recording import truth_of
+from capar.body.recording import truth_of, write_bundle
 from capar.body.scripted_actions import ACTIONS, action_capture, performed
 from capar.model.errors import CaparError
 from capar.pipelines.observation import observe

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from capar.claims.files import read_motion_test, run_motion_test
+from capar.claims.claims import read_motion_test, run_motion_test
 from capar.cli import app
 from capar.model.errors import CaparError, FileError
 

@@ -5,8 +5,7 @@ from pathlib import Path
 import motions
 import pytest
 
-from capar.claims.motion_claims import ClaimError, judge
-from capar.claims.names import names_of
+from capar.claims.claims import ClaimError, judge, names_of
 from capar.model.errors import UnknownNameError
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe

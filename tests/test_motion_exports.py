@@ -12,7 +12,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 from virtual_bodies.moving import MILLIMETRE, TENTH_DEG, Moved, turning
 
-from capar.body.segment_poses import poses_of
+from capar.body.human import poses_of
 from capar.export.bvh import AXES, UNIT_M, bvh_text
 from capar.export.glb import glb_bytes
 from capar.export.motion_tables import csv_text, mjcf_text, write_npz

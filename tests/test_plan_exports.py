@@ -12,10 +12,8 @@ from plan_tools import World, problem_of, shortest_plan, ticked
 from typer.testing import CliRunner
 
 from capar.cli import app
-from capar.export.behavior_tree import behavior_tree
-from capar.export.bml import NAMESPACE, bml
 from capar.export.pddl import pddl
-from capar.export.plan_sources import PlanSource
+from capar.export.plans import NAMESPACE, PlanSource, behavior_tree, bml
 from capar.model.errors import CaparError
 from capar.model.facts import Touching
 from capar.model.observation import Observation

@@ -10,8 +10,7 @@ from second_readers import gltf_report, gltf_validator_missing
 from virtual_bodies.moving import MILLIMETRE, TENTH_DEG, Moved, turning
 
 from capar.body.anthropometry import ready_made
-from capar.body.human import Human
-from capar.body.segment_poses import poses_of
+from capar.body.human import Human, poses_of
 from capar.export.bvh import AXES, UNIT_M, bvh_text
 from capar.export.c3d import c3d_bytes
 from capar.export.glb import glb_bytes

@@ -1,14 +1,36 @@
 """Body measures: those given, and the rest estimated from stature, sex and age."""
 
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
 from statistics import NormalDist
 from types import MappingProxyType
 from typing import Any
 
-from capar.body.data_files import table
 from capar.model.capture import Agent
 from capar.model.errors import CaparError, UnknownNameError
+
+
+@cache
+def table(name: str) -> dict[str, Any]:
+    """The table ``data/<name>.toml``; callers do not change it."""
+    text = (files("capar.body") / "data" / f"{name}.toml").read_text("utf-8")
+    return tomllib.loads(text)
+
+
+def mirrored(name: str) -> str:
+    """The name of the same thing on the other side: ``right_hand`` and ``left_hand``."""
+    if "right_" in name:
+        return name.replace("right_", "left_")
+    return name.replace("left_", "right_")
+
+
+def is_right(name: str) -> bool:
+    """Whether a name is of the right side, whose rows stand for both sides."""
+    return "right_" in name
+
 
 GIVEN_DEVIATION_M = 0.003
 """Deviation of a length that somebody measured [m]: what trained observers differ by."""

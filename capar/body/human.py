@@ -1,16 +1,170 @@
-"""A body that can be postured and asked where its parts are."""
+"""A body as a MuJoCo model that can be postured and asked where its parts are."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import mujoco
 import numpy as np
 from jaxtyping import Bool, Float
+from scipy.spatial.transform import Rotation
 
-from capar.body.anthropometry import Measures
-from capar.body.model import body_spec
+from capar.body.anthropometry import Measures, is_right, mirrored, table
+from capar.body.shapes import Form, forms, palm_centre
+from capar.body.skeleton import Inertia, Segment, eyes_between, inertias, skeleton
 from capar.model.errors import CaparError, UnknownNameError
+
+ROOT = "root"
+"""Name of the free joint."""
+
+ARMATURE = 0.01
+"""Added inertia of a hinge [kg m2], for simulations that step the model."""
+
+_KINDS = {
+    "capsule": mujoco.mjtGeom.mjGEOM_CAPSULE,
+    "ellipsoid": mujoco.mjtGeom.mjGEOM_ELLIPSOID,
+    "box": mujoco.mjtGeom.mjGEOM_BOX,
+}
+
+
+def body_spec(measures: Measures, *, prefix: str = "") -> mujoco.MjSpec:
+    """The specification of a body standing on z = 0, looking along x, its arms down.
+
+    Args:
+        measures: Of whom.
+        prefix: Put before every name, so that several bodies share a scene.
+    """
+    spec = mujoco.MjSpec()
+    spec.modelname = f"{prefix}body"
+    spec.compiler.degree = False
+    segments = skeleton(measures)
+    weights = inertias(measures, segments)
+    bodies: dict[str, Any] = {}
+    for name, segment in segments.items():
+        bodies[name] = _add_segment(spec, bodies, segment, segments, weights[name], prefix)
+    for row in joint_rows(measures):
+        _add_hinge(bodies[row["body"]], row, prefix)
+    for row in site_rows():
+        _add_site(bodies[row["body"]], row, measures, segments[row["body"]], prefix)
+    for number, form in enumerate(forms(measures, segments)):
+        _add_form(bodies[form.body], form, f"{prefix}{form.body}_{number}")
+    return spec
+
+
+def joint_rows(measures: Measures) -> list[dict[str, Any]]:
+    """Every hinge with its axis, and its range [rad] between a child's and an adult's by age."""
+    out = []
+    for row in table("joints")["joint"]:
+        young = np.radians(row.get("child", row["range"]))
+        grown, share = np.radians(row["range"]), measures.adult_share
+        one = {**row, "range": (1.0 - share) * young + share * grown}
+        out.append(one)
+        if is_right(row["body"]):
+            out.append(_mirror_hinge(one))
+    return out
+
+
+def site_rows() -> list[dict[str, Any]]:
+    """Every site, those of the left side mirrored."""
+    right = [*table("sites")["site"], *table("landmarks")["site"]]
+    return [*right, *(_mirror_site(row) for row in right if is_right(row["name"]))]
+
+
+def sensor_sites() -> tuple[str, ...]:
+    """The sites of the thesis's eleven body sensors (thesis 5.1)."""
+    return tuple(row["name"] for row in site_rows() if row.get("sensor"))
+
+
+def _mirror_hinge(row: Mapping[str, Any]) -> dict[str, Any]:
+    x, y, z = row["axis"]
+    names = {key: mirrored(row[key]) for key in ("body", "name")}
+    return {**row, **names, "axis": [-x, y, -z]}
+
+
+def _mirror_site(row: Mapping[str, Any]) -> dict[str, Any]:
+    flip = np.array([1.0, -1.0, 1.0])
+    axes = {key: np.array(axis) * flip for key, axis in row.get("axes", {}).items()}
+    names = {"name": mirrored(row["name"]), "body": mirrored(row["body"])}
+    return {**row, **names, "offset": np.array(row["offset"]) * flip, "axes": axes}
+
+
+def _add_segment(
+    spec: mujoco.MjSpec,
+    bodies: Mapping[str, Any],
+    segment: Segment,
+    segments: Mapping[str, Segment],
+    weight: Inertia,
+    prefix: str,
+) -> Any:
+    parent = bodies[segment.parent] if segment.parent else spec.worldbody
+    start = segments[segment.parent].origin if segment.parent else np.zeros(3)
+    body = parent.add_body(name=prefix + segment.name, pos=segment.origin - start)
+    body.explicitinertial = True
+    body.mass, body.ipos, body.inertia = weight.mass, weight.centre, weight.moments
+    if not segment.parent:
+        body.add_freejoint(name=prefix + ROOT)
+    return body
+
+
+def _add_hinge(body: Any, row: Mapping[str, Any], prefix: str) -> None:
+    body.add_joint(
+        name=prefix + row["name"],
+        type=mujoco.mjtJoint.mjJNT_HINGE,
+        axis=np.array(row["axis"], dtype=float),
+        limited=mujoco.mjtLimited.mjLIMITED_TRUE,
+        range=row["range"],
+        armature=ARMATURE,
+    )
+
+
+def _add_site(
+    body: Any, row: Mapping[str, Any], m: Measures, segment: Segment, prefix: str
+) -> None:
+    place = _site_base(row, m, segment) + np.array(row["offset"]) * m["stature"]
+    body.add_site(
+        name=prefix + row["name"],
+        pos=place,
+        quat=_turn(row.get("axes")).as_quat(scalar_first=True),
+        size=[0.008, 0.0, 0.0],
+        group=4,
+    )
+
+
+def _site_base(row: Mapping[str, Any], m: Measures, segment: Segment) -> Float[np.ndarray, "3"]:
+    if row.get("of") == "eyes":
+        return eyes_between(m) - segment.origin
+    if row.get("of") == "palm":
+        return np.array(palm_centre(m) * [1.0, 1.0 if is_right(segment.name) else -1.0, 1.0])
+    if row.get("of") == "sole":
+        return np.array([0.1 * m["foot_length"], 0.0, -m["ankle_height"]])
+    return np.asarray(row["along"] * (segment.tip - segment.origin))
+
+
+def _turn(axes: Mapping[str, Any] | None) -> Rotation:
+    if not axes:
+        return Rotation.identity()
+    x, z = np.array(axes["x"], dtype=float), np.array(axes["z"], dtype=float)
+    return Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=1))
+
+
+def _add_form(body: Any, form: Form, name: str) -> None:
+    upwards = np.array([0.0, 0.0, 1.0])
+    turn = Rotation.identity()
+    if form.kind == "capsule":
+        turn, _ = Rotation.align_vectors(form.axis / np.linalg.norm(form.axis), upwards)
+    body.add_geom(
+        name=name,
+        type=_KINDS[form.kind],
+        pos=form.centre,
+        quat=turn.as_quat(scalar_first=True),
+        size=form.half,
+        rgba=table("shapes")["colours"][form.colour],
+        mass=0.0,
+        contype=0,
+        conaffinity=0,
+    )
+
 
 ROOT_SIZE = 7
 """Numbers of a posture that place the pelvis: x y z [m] and w x y z."""
@@ -138,3 +292,70 @@ class Human:
         known = [self.model.site(each).name for each in range(self.model.nsite)]
         known += [self.model.body(each).name for each in range(1, self.model.nbody)]
         raise UnknownNameError("place on the body", name, known)
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Poses of all segments, parents first; the first is the pelvis."""
+
+    names: tuple[str, ...]
+    parents: tuple[int, ...]
+    """Number of each segment's parent; -1 for the pelvis."""
+
+    offsets: Float[np.ndarray, "segments 3"]
+    """Each segment's joint in its parent's frame [m]; the pelvis's in the world, standing."""
+
+    positions: Float[np.ndarray, "frames segments 3"]
+    """In the world [m], z up."""
+
+    orientations: Float[np.ndarray, "frames segments 4"]
+    """In the world, w x y z; standing, all are the world's: x forward, y left, z up."""
+
+    turns: Float[np.ndarray, "frames segments 4"]
+    """Against the parent, w x y z, without jumps of sign; the pelvis's in the world."""
+
+
+def poses_of(human: Human, motion: Float[np.ndarray, "frames posture"]) -> Poses:
+    """The poses that a motion brings the segments to."""
+    model, data = human.model, mujoco.MjData(human.model)
+    bodies = range(1, model.nbody)
+    positions = np.empty((len(motion), model.nbody - 1, 3))
+    orientations = np.empty((len(motion), model.nbody - 1, 4))
+    for frame, posture in enumerate(motion):
+        data.qpos[:] = posture
+        mujoco.mj_kinematics(model, data)
+        positions[frame], orientations[frame] = data.xpos[1:], data.xquat[1:]
+    parents = tuple(int(model.body_parentid[body]) - 1 for body in bodies)
+    return Poses(
+        tuple(model.body(body).name for body in bodies),
+        parents,
+        np.array(model.body_pos[1:]),
+        positions,
+        _signed(orientations),
+        _signed(_against(orientations, parents)),
+    )
+
+
+def _against(
+    orientations: Float[np.ndarray, "frames segments 4"], parents: Sequence[int]
+) -> Float[np.ndarray, "frames segments 4"]:
+    out = orientations.copy()
+    for number, parent in enumerate(parents):
+        if parent >= 0:
+            own, base = (
+                Rotation.from_quat(orientations[:, each], scalar_first=True)
+                for each in (number, parent)
+            )
+            out[:, number] = (base.inv() * own).as_quat(scalar_first=True)
+    return out
+
+
+def _signed(
+    quaternions: Float[np.ndarray, "frames segments 4"],
+) -> Float[np.ndarray, "frames segments 4"]:
+    """The same rotations with signs by which neighbouring frames are near each other."""
+    near = np.einsum("fsi,fsi->fs", quaternions[1:], quaternions[:-1])
+    signs = np.cumprod(np.where(near < 0.0, -1.0, 1.0), axis=0)
+    out = quaternions.copy()
+    out[1:] *= signs[:, :, None]
+    return out

@@ -4,9 +4,61 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.tosses import Toss, Vector
+Vector = tuple[float, float, float]
+
+GRAVITY_MPS2 = np.array([0.0, 0.0, -9.81])
+"""Standard gravity, rounded [m/s^2]."""
+
+
+@dataclass(frozen=True)
+class Toss:
+    """What moves a thing in a phase in which it is thrown, flies or is caught."""
+
+    start: Vector = (0.0, 0.0, 0.0)
+    """Velocity with which it begins [m/s]."""
+
+    end: Vector = (0.0, 0.0, 0.0)
+    """Velocity with which it ends; ignored where it falls [m/s]."""
+
+    falls: bool = False
+    """Whether nothing but gravity moves it."""
+
+
+def tossed(toss: Toss, by: Vector, seconds: float, share: float) -> Float[np.ndarray, "3"]:
+    """Displacement of a thing since its phase began [m], in the world's axes.
+
+    In a hand along a cubic Hermite curve that has both velocities, else along the parabola of
+    gravity.
+
+    Args:
+        toss: How it moves.
+        by: Where a hand brings it, from where it was [m]; ignored where it falls.
+        seconds: Length of the phase [s].
+        share: Of the phase that has passed [1].
+    """
+    start, end, goal = np.array(toss.start), np.array(toss.end), np.array(by)
+    if toss.falls:
+        past = share * seconds
+        return np.asarray(start * past + 0.5 * GRAVITY_MPS2 * past**2)
+    leaving, arriving = share - 2.0 * share**2 + share**3, share**3 - share**2
+    led = goal * (3.0 * share**2 - 2.0 * share**3)
+    return np.asarray(led + seconds * (leaving * start + arriving * end))
+
+
+def slowed(velocity: Vector, past_s: float, stops_s: float) -> Float[np.ndarray, "3"]:
+    """How far something goes that decelerates evenly to rest [m].
+
+    Args:
+        velocity: With which it begins [m/s].
+        past_s: Since then [s].
+        stops_s: How long it takes to stop [s].
+    """
+    past = min(past_s, stops_s)
+    return np.asarray(np.array(velocity) * (past - 0.5 * past**2 / stops_s))
+
 
 SIDES = ("right", "left")
 
@@ -366,3 +418,59 @@ def turned_about(
     """A pose turned about a point of its own frame [m], in the world's axes."""
     there = RigidTransform.from_translation(pose.apply(point))
     return there * RigidTransform.from_rotation(turn) * there.inv() * pose
+
+
+VELOCITY: Vector = (0.0, 1.1, 1.4)
+"""With which the right hand throws: to the left and upwards [m/s]."""
+
+SWINGS_S, FLIES_S, STOPS_S = 0.3, 0.3, 0.25
+"""How long the throw, the flight and the stop take [s]."""
+
+LIFT: Vector = (0.0, -0.08, 0.16)
+"""From where the thing stands to where the throw begins [m]."""
+
+BESIDE = np.array([0.0, 0.04, -0.02])
+"""From where the thing is caught to where the hand waits as if it held it there [m]."""
+
+
+def toss(thing: str) -> Script:
+    """Take a thing, throw it to the left hand, catch it there, and put it down.
+
+    Args:
+        thing: What is thrown.
+    """
+    thrown = np.array(VELOCITY)
+    caught = thrown + GRAVITY_MPS2 * FLIES_S
+    # A hand that speeds up or slows down evenly covers half of the speed times the time.
+    swing, stop = 0.5 * SWINGS_S * thrown, 0.5 * STOPS_S * caught
+    flight = FLIES_S * thrown + 0.5 * GRAVITY_MPS2 * FLIES_S**2
+    meets = LIFT + swing + flight
+    down = -float((meets + stop)[2])
+    right, left = {"right": Hand("holds", thing)}, {"left": Hand("holds", thing)}
+    waits = {**right, "left": Hand("awaits", thing, awaited=_vector(meets + BESIDE))}
+    swings_on = {"right": Hand("lets_go", thing, velocity=VELOCITY)}
+    flies = {**swings_on, "left": Hand("reaches", thing)}
+    catches = {"right": Hand("lets_go", thing), **left}
+    throws = Move(_vector(swing), toss=Toss(end=VELOCITY))
+    falls = Move(_vector(flight), toss=Toss(VELOCITY, falls=True))
+    stops = Move(_vector(stop), toss=Toss(_vector(caught)))
+    return (
+        STAND,
+        Phase("reach", 1.0, {"right": Hand("reaches", thing)}, look=thing),
+        Phase("grasp", 0.3, right, look=thing),
+        Phase("lift", 0.9, waits, {thing: Move(LIFT)}, look=thing),
+        Phase("poise", 0.5, waits, look=thing),
+        Phase("throw", SWINGS_S, waits, {thing: throws}, look=thing),
+        Phase("fly", FLIES_S, flies, {thing: falls}, look=thing),
+        Phase("catch", STOPS_S, catches, {thing: stops}, look=thing),
+        Phase("hold", 0.4, catches, look=thing),
+        Phase("lower", 0.9, catches, {thing: Move((0.0, 0.0, down))}, look=thing),
+        Phase("release", 0.4, catches, look=thing),
+        Phase("return", 1.0, look="ahead"),
+        Phase("stand", 0.6, look="ahead"),
+    )
+
+
+def _vector(values: np.ndarray) -> Vector:
+    x, y, z = (float(value) for value in values)
+    return x, y, z

@@ -25,7 +25,7 @@ class MotionFile(pytest.File):
 
     def collect(self) -> Iterator["ClaimItem"]:
         """One item for each capture and claim."""
-        from capar.claims.files import read_motion_test
+        from capar.claims.claims import read_motion_test
 
         test = read_motion_test(self.path)
         for capture in test.captures:
@@ -54,7 +54,7 @@ class ClaimItem(pytest.Item):
         """Judge the claim."""
         from dataclasses import replace
 
-        from capar.claims.files import run_motion_test
+        from capar.claims.claims import run_motion_test
 
         one = replace(self.test, captures=(self.capture,), claims=(self.claim,))
         for verdict in run_motion_test(one):

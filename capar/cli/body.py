@@ -11,7 +11,7 @@ from capar.cli.options import Assume, NewBundle
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from capar.body.fitting import Fit
+    from capar.body.sensor_fitting import Fit
 
 
 def fit(
@@ -43,7 +43,7 @@ def fit(
 
     To sensors it is fitted again, with limb lengths from the motion, where that is needed.
     """
-    from capar.body.whole_bodies import fit_body, remarks_on
+    from capar.body.body_fitting import fit_body, remarks_on
     from extractors.readers.bundle.capture_toml import read_capture
 
     recorded = read_capture(capture)
@@ -173,11 +173,14 @@ def perform(
     The capture bundle has sensors on hands and head, the things that are handled, and what
     is exactly so beside it (truth.toml): it serves to try every other command.
     """
-    from capar.body.bundles import write_bundle
-    from capar.body.joint_actions import JOINT_ACTIONS, joint_capture, performed_together
-    from capar.body.joint_performances import truth_together
-    from capar.body.recording import truth_of
-    from capar.body.scripted_actions import action_capture, performed
+    from capar.body.recording import truth_of, truth_together, write_bundle
+    from capar.body.scripted_actions import (
+        JOINT_ACTIONS,
+        action_capture,
+        joint_capture,
+        performed,
+        performed_together,
+    )
     from capar.cli.output import check_new_folder
 
     check_new_folder(output)

@@ -271,8 +271,8 @@ def view(
     trial = read_capture(capture)
     shown = stage(trial, at_s=at)
     if fit:
-        from capar.body.whole_bodies import fit_body
-        from capar.views.viewer.mannequin import with_mannequin
+        from capar.body.body_fitting import fit_body
+        from capar.views.viewer.stage import with_mannequin
 
         shown = with_mannequin(shown, fit_body(capture, trial))
     if png is not None:

@@ -9,15 +9,15 @@ import typer
 
 from capar.cli.options import Beside, Rules, Steady, rule_base
 from capar.cli.output import check_writable, console, print_json, progress, written
-from capar.evaluation.kinds import Contradictions, Kind
+from capar.evaluation.labels import Contradictions, Kind
 from capar.model.errors import CaparError
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from capar.claims.motion_claims import Verdict
-    from capar.evaluation.evaluations import Evaluation
+    from capar.claims.claims import Verdict
+    from capar.evaluation.metrics import Evaluation
     from capar.evaluation.plan import Plan
 
 
@@ -305,14 +305,14 @@ def evaluate(
     else:
         if takes:
             raise CaparError("--takes belongs to an evaluation file; name takes as BUNDLE:PATTERN")
-        from capar.evaluation.mapping import read_mapping
+        from capar.evaluation.plan import read_mapping
 
         pairs = read_pairs(places)
         chosen = read_mapping(mapping) if mapping else None
         plan = Plan(kind, pairs, chosen, frames_of=frames_of, contradictions=contradictions)
     if plot:
         _prove_pictures(plan, plot)
-    from capar.evaluation.evaluations import report
+    from capar.evaluation.metrics import report
     from capar.evaluation.running import evaluate as carry_out
 
     found = carry_out(plan, rules=base, progress=progress("observing"))
@@ -432,14 +432,14 @@ def test(
 
 
 def _paths(files: Iterable[Path]) -> Iterator[Path]:
-    from capar.claims.files import SUFFIX
+    from capar.claims.claims import SUFFIX
 
     for file in files:
         yield from sorted(file.rglob(f"*{SUFFIX}")) if file.is_dir() else [file]
 
 
 def _judged(path: Path, rules: Path | None, actionary: str | None) -> _Suite:
-    from capar.claims.files import read_motion_test, run_motion_test
+    from capar.claims.claims import read_motion_test, run_motion_test
 
     try:
         claimed = read_motion_test(path)

@@ -370,8 +370,7 @@ def observe(
     base = rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
     if fit:
-        from capar.body.body_parts import with_body_parts
-        from capar.body.whole_bodies import fit_body
+        from capar.body.body_fitting import fit_body, with_body_parts
 
         trial = with_body_parts(trial, fit_body(capture, trial))
 

@@ -10,7 +10,7 @@ import typer
 from capar.cli.options import New, Place, Wait, confirm_new, opened, require_actionary
 
 if TYPE_CHECKING:
-    from capar.export.plan_sources import PlanSource
+    from capar.export.plans import PlanSource
 
 
 def import_(

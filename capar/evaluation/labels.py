@@ -1,15 +1,50 @@
-"""Labels: what people say was done, by whom and when, checked against themselves and the clock."""
+"""Labels: what people say was done, by whom and when, read from files of every form and checked."""
 
-from collections.abc import Iterable
+import contextlib
+import csv
+import io
+import json
+import math
+import re
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from io import StringIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
-from capar.evaluation.kinds import Contradictions as Contradictions
-from capar.evaluation.kinds import Kind as Kind
 from capar.model.errors import FileError, UnknownNameError
+from extractors.readers.files import read_bytes, read_text
+
+
+class Kind(StrEnum):
+    """What labels are about."""
+
+    ACTIONS = "actions"
+    """What each link does, from when to when; one action at a time."""
+
+    CONTACTS = "contacts"
+    """When two bodies touch."""
+
+    CARRIES = "carries"
+    """From when to when an object is carried."""
+
+    CONTAINERS = "containers"
+    """What goes into a container; the capture itself tells, by first and last poses."""
+
+    EVENTS = "events"
+    """What a hand does at about a time; a label is a window in which it must be found."""
+
+
+class Contradictions(StrEnum):
+    """What to do about marks that end before they start, and marks that overlap."""
+
+    REFUSE = "refuse"
+    LEAVE_OUT = "leave-out"
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -229,3 +264,371 @@ def _after_last(times: Float[np.ndarray, "frames"]) -> float:
     """When the frame after the last would be taken [s]."""
     step = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
     return float(times[-1]) + step
+
+
+BOMS = ((b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"), (b"\xef\xbb\xbf", "utf-8-sig"))
+"""How a file begins that says its encoding; Praat writes UTF-16 where a text needs it."""
+
+INTERVALS = "IntervalTier"
+
+
+@dataclass(frozen=True, slots=True)
+class Annotation:
+    """One annotated interval."""
+
+    tier: str
+    start_s: float
+    end_s: float
+    text: str
+    where: str
+    """File and line, or the tier and the interval's number where lines are not told."""
+
+
+def read_elan(path: Path) -> tuple[Annotation, ...]:
+    """The time-aligned annotations of every tier of an ELAN file; tiers of references have none.
+
+    Raises:
+        FileError: It is no ELAN file, or an annotation has no time.
+    """
+    from defusedxml import DefusedXmlException
+    from defusedxml.ElementTree import ParseError, fromstring
+    from pympi import Eaf
+
+    text = read_bytes(path)
+    try:
+        root = fromstring(text)
+    except ParseError as error:
+        raise FileError(f"{path}:{error.position[0]}", f"is no XML: {error}.", _ELAN) from None
+    except (DefusedXmlException, ValueError) as error:
+        raise FileError(path, f"is refused: {error!r}.", _ELAN) from None
+    if root.tag != "ANNOTATION_DOCUMENT":
+        raise FileError(path, f"holds <{root.tag}>.", _ELAN)
+    file = _quietly(path, lambda: Eaf(str(path), suppress_version_warning=True), _ELAN)
+    lines = _lines(text.decode("utf-8", "replace"), r'ANNOTATION_ID="([^"]*)"')
+    return tuple(
+        _aligned(file, path, tier, name, lines)
+        for tier, (aligned, *_) in file.tiers.items()
+        for name in aligned
+    )
+
+
+def read_praat(path: Path) -> tuple[Annotation, ...]:
+    """The intervals with a text, of every interval tier of a TextGrid.
+
+    Raises:
+        FileError: It is no TextGrid.
+    """
+    from pympi import TextGrid
+
+    content = read_bytes(path)
+    codec = next((name for bom, name in BOMS if content.startswith(bom)), "utf-8")
+    file = _quietly(path, lambda: TextGrid(str(path), codec=codec), _PRAAT)
+    tiers = [tier for tier in file.get_tiers() if tier.tier_type == INTERVALS]
+    lines = _interval_lines(content.decode(codec, "replace"))
+    return tuple(
+        Annotation(tier.name, start, end, text, _place(path, tier.name, index, lines))
+        for tier in tiers
+        for index, (start, end, text) in enumerate(tier.get_intervals(), 1)
+        if text.strip()
+    )
+
+
+_ELAN = "Give an ELAN annotation file (.eaf), as ELAN saves it."
+_PRAAT = "Give a Praat TextGrid, as Praat saves it."
+
+
+def _quietly(path: Path, read: Callable[[], Any], remedy: str) -> Any:
+    """What pympi reads; it raises bare exceptions of many kinds and may write to the terminal."""
+    try:
+        with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
+            warnings.simplefilter("ignore")
+            return read()
+    except Exception as error:  # pympi raises Exception itself, and whatever bytes make of it
+        kind = type(error).__name__
+        raise FileError(path, f"cannot be read to its end ({kind}: {error}).", remedy) from None
+
+
+def _aligned(file: Any, path: Path, tier: str, name: str, lines: dict[str, int]) -> Annotation:
+    first, last, text, _ = file.tiers[tier][0][name]
+    where = f"{path}:{lines[name]}" if name in lines else f"{path}: tier {tier!r}, {name}"
+    times = [file.timeslots.get(each) for each in (first, last)]
+    if None in times:
+        raise FileError(
+            where, f"annotation {text!r} on tier {tier!r} has no time of its own.",
+            "Align its start and its end to the time line in ELAN.",
+        )  # fmt: skip
+    start, end = (float(each) / 1000.0 for each in times)
+    return Annotation(tier, start, end, text, where)
+
+
+def _lines(text: str, pattern: str) -> dict[str, int]:
+    """The line of each name that a pattern finds."""
+    return {
+        match.group(1): text.count("\n", 0, match.start()) + 1
+        for match in re.finditer(pattern, text)
+    }
+
+
+def _interval_lines(text: str) -> dict[tuple[str, int], int]:
+    """The line of each interval of a long TextGrid, by tier and number; a short one has none."""
+    out: dict[tuple[str, int], int] = {}
+    tier = ""
+    for number, line in enumerate(text.splitlines(), 1):
+        if match := re.match(r'\s*name = "(.*)"\s*$', line):
+            tier = match.group(1).replace('""', '"')
+        elif match := re.match(r"\s*intervals \[(\d+)\]", line):
+            out[tier, int(match.group(1))] = number
+    return out
+
+
+def _place(path: Path, tier: str, index: int, lines: dict[tuple[str, int], int]) -> str:
+    line = lines.get((tier, index))
+    return f"{path}:{line}" if line else f"{path}: tier {tier!r}, interval {index}"
+
+
+BIMACTS = (
+    "idle",
+    "approach",
+    "retreat",
+    "lift",
+    "place",
+    "hold",
+    "pour",
+    "cut",
+    "hammer",
+    "saw",
+    "stir",
+    "screw",
+    "drink",
+    "wipe",
+)
+"""Names of the action numbers of the KIT Bimanual Actions Dataset."""
+
+UNNAMED = {"", "None", "none", "null"}
+UNSURE = {"no", "false", "0"}
+SURE = {"", "yes", "true", "1"}
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The columns of a label table: for each field of a mark, the names that it may have."""
+
+    link: tuple[str, ...] = ()
+    label: tuple[str, ...] = ()
+    object: tuple[str, ...] = ()
+    needed: tuple[str, ...] = ()
+    """Which of the three must be there."""
+
+    constant: str = ""
+    """The label of every mark, where there is no column of labels."""
+
+
+COLUMNS = {
+    Kind.ACTIONS: Columns(("link", "hand"), ("label", "action"), ("object",), ("link", "label")),
+    Kind.CONTACTS: Columns(
+        ("body", "link", "hand"), (), ("other", "object"), ("link", "object"), constant="contact"
+    ),
+    Kind.CARRIES: Columns(("link", "hand"), (), ("object",), ("object",), constant="carry"),
+    Kind.EVENTS: Columns(
+        ("hand", "link"), ("event", "label"), ("other", "object"), ("link", "label")
+    ),
+}
+TIMES = (("start_s", "end_s"), ("start_frame", "end_frame"))
+"""The columns of times, in seconds or in frames."""
+
+
+def read_labels(
+    path: Path,
+    kind: Kind = Kind.ACTIONS,
+    *,
+    contradictions: Contradictions = Contradictions.REFUSE,
+) -> Labels:
+    """Read a label file, whichever of the known forms it has.
+
+    Tables are CSV, or a JSON list of objects with the same keys: ``link,start_s,end_s,label`` for
+    actions, ``body,other,start_s,end_s`` for contacts, ``object,start_s,end_s`` for carries and
+    ``hand,event,start_s,end_s`` for events; ``start_frame,end_frame`` count frames. In ELAN and
+    Praat files a tier is who acts, and a text what is done (actions), what is touched (contacts)
+    or carried (carries), or both, event first (events).
+
+    Raises:
+        FileError: It is none of these forms, marks nothing, or a mark contradicts itself or
+            another; the message has the line.
+    """
+    suffix = path.suffix.lower()
+    if suffix == ".textgrid":
+        marks, in_frames = _annotated(path, read_praat(path), kind), False
+    elif suffix == ".eaf":
+        marks, in_frames = _annotated(path, read_elan(path), kind), False
+    else:
+        marks, in_frames = _text(path, read_text(path), kind)
+    return agreed(path, marks, in_frames=in_frames, kind=kind, contradictions=contradictions)
+
+
+def _text(path: Path, text: str, kind: Kind) -> tuple[list[Label], bool]:
+    opening = text.lstrip()[:1]
+    if opening == "{" and kind is Kind.ACTIONS:
+        return _bimacts(path, text), True
+    if opening in {"[", "{"}:
+        return _rows(path, list(_json_rows(path, text)), kind)
+    return _rows(path, list(_csv_rows(text)), kind, _header(text))
+
+
+Row = tuple[int, Mapping[str, str]]
+"""A line's number, and the values by column."""
+
+
+def _header(text: str) -> Sequence[str]:
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    return next(csv.reader(lines), [])
+
+
+def _csv_rows(text: str) -> Iterator[Row]:
+    """The rows of a CSV; lines that begin with # are left out, and counted."""
+    header: list[str] | None = None
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.startswith("#") or not line.strip():
+            continue
+        values = next(csv.reader(StringIO(line)))
+        if header is None:
+            header = values
+            continue
+        yield number, dict(zip(header, values, strict=False))
+
+
+def _json_rows(path: Path, text: str) -> Iterator[Row]:
+    """The objects of a JSON list, each with the line that it begins in."""
+    remedy = 'Such a file reads [{"link": "right_hand", "start_s": 0.0, ...}, ...].'
+    decoder = json.JSONDecoder()
+    place = text.find("[") + 1 if text.lstrip().startswith("[") else -1
+    if not place:
+        raise FileError(f"{path}:1", "is no JSON list.", remedy)
+    while True:
+        while place < len(text) and text[place] in " \t\r\n,":
+            place += 1
+        line = text.count("\n", 0, place) + 1
+        if text[place : place + 1] == "]":
+            return
+        try:
+            row, place = decoder.raw_decode(text, place)
+        except (ValueError, RecursionError) as error:
+            raise FileError(f"{path}:{line}", f"is no JSON: {error}.", remedy) from None
+        if not isinstance(row, dict):
+            raise FileError(f"{path}:{line}", "is no JSON object.", remedy)
+        yield line, {key: "" if value is None else str(value) for key, value in row.items()}
+
+
+def _rows(
+    path: Path, rows: Sequence[Row], kind: Kind, header: Sequence[str] | None = None
+) -> tuple[list[Label], bool]:
+    names = list(header if header is not None else (rows[0][1] if rows else ()))
+    columns, times = COLUMNS[kind], [each for each in TIMES if set(each) <= set(names)]
+    missing = [each for each in columns.needed if not _column(getattr(columns, each), names)]
+    if (missing or not times) and (rows or header is not None):
+        place = f"{path}:{rows[0][0]}" if header is None else path
+        raise FileError(place, f"its columns are {', '.join(names) or 'none'}.", _wanted(kind))
+    marks = [_mark(f"{path}:{line}", row, columns, times[0]) for line, row in rows]
+    kept = [each for each in marks if each.label not in UNNAMED]
+    return kept, bool(times) and times[0] == TIMES[1]
+
+
+def _wanted(kind: Kind) -> str:
+    columns = COLUMNS[kind]
+    own = ",".join(getattr(columns, each)[0] for each in columns.needed)
+    optional = [getattr(columns, each)[0] for each in ("link", "object")
+                if each not in columns.needed and getattr(columns, each)]  # fmt: skip
+    more = "".join(f"[,{each}]" for each in [*optional, "sure"])
+    return (
+        f"A table of {kind} has the columns {own},start_s,end_s{more}, or with "
+        "start_frame,end_frame in the place of seconds."
+    )
+
+
+def _column(accepted: Sequence[str], names: Sequence[str]) -> str:
+    return next((each for each in accepted if each in names), "")
+
+
+def _mark(place: str, row: Mapping[str, str], columns: Columns, times: tuple[str, str]) -> Label:
+    def value(accepted: Sequence[str]) -> str:
+        return (row.get(_column(accepted, list(row)), "") or "").strip()
+
+    thing = value(columns.object)
+    for needed in columns.needed:
+        if needed != "label" and value(getattr(columns, needed)) in UNNAMED:
+            raise FileError(place, f"has no {getattr(columns, needed)[0]}.")
+    return Label(
+        link=value(columns.link),
+        start=_number(place, (row.get(times[0]) or "").strip()),
+        end=_number(place, (row.get(times[1]) or "").strip()),
+        label=columns.constant or value(columns.label),
+        object="" if thing in UNNAMED else thing,
+        sure=_sure(place, (row.get("sure") or "").strip()),
+        where=place,
+    )
+
+
+def _sure(place: str, text: str) -> bool:
+    if text.lower() not in SURE | UNSURE:
+        raise FileError(place, f"sure is {text!r}.", "Write yes or no.")
+    return text.lower() in SURE
+
+
+def _number(place: str, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise FileError(place, f"{text!r} is no number.")
+    return value
+
+
+def _annotated(path: Path, found: Sequence[Annotation], kind: Kind) -> list[Label]:
+    """Marks from tiers: a tier is who acts, a text what is done, touched or carried."""
+    out = []
+    for annotation in found:
+        if not annotation.text.strip():
+            continue
+        first, _, second = annotation.text.strip().partition(" ")
+        label, thing = {
+            Kind.ACTIONS: (annotation.text.strip(), ""),
+            Kind.CONTACTS: ("contact", annotation.text.strip()),
+            Kind.CARRIES: ("carry", annotation.text.strip()),
+            Kind.EVENTS: (first, second.strip()),
+        }[kind]
+        link = "" if kind is Kind.CARRIES else annotation.tier
+        out.append(
+            Label(link, annotation.start_s, annotation.end_s, label, thing, where=annotation.where)
+        )
+    return out
+
+
+def _bimacts(path: Path, text: str) -> list[Label]:
+    try:
+        content: dict[str, list[Any]] = json.loads(text)
+        return [
+            each
+            for link, marks in content.items()
+            for each in _alternating(link, marks, f"{path}:{_line_of(text, link)}")
+        ]
+    except (ValueError, TypeError, IndexError, AttributeError, RecursionError) as error:
+        raise FileError(
+            path,
+            f"is no label file of the KIT Bimanual Actions Dataset: {error}.",
+            'It reads {"right_hand": [0, [action, class, object], 98, ..., last frame]}.',
+        ) from None
+
+
+def _line_of(text: str, link: str) -> int:
+    return text.count("\n", 0, max(text.find(json.dumps(link)), 0)) + 1
+
+
+def _alternating(link: str, marks: list[Any], where: str) -> list[Label]:
+    """Marks from a list that alternates frames and actions."""
+    out = []
+    for start, action, end in zip(marks[:-1:2], marks[1::2], marks[2::2], strict=True):
+        number, _, thing = action
+        if number is not None:
+            label = BIMACTS[number]
+            out.append(Label(link, float(start), float(end), label, str(thing or ""), where=where))
+    return out

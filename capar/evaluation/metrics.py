@@ -9,12 +9,18 @@ F1 is computed; edit scores are averaged over sequences. All scores are percenta
 """
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from functools import reduce
+from operator import add
+from typing import Any, Protocol, Self
 
 import numpy as np
 from jaxtyping import Bool, Float
+
+from capar.evaluation.labels import Kind
+from capar.model.geometry import runs
+from capar.model.observation import Segment
 
 THRESHOLDS = (10, 25, 50)
 """Least intersection over union of a right segment [%]."""
@@ -264,3 +270,236 @@ def _overlap(one: Interval, other: Interval) -> float:
     common = min(one.end_s, other.end_s) - max(one.start_s, other.start_s)
     whole = max(one.end_s, other.end_s) - min(one.start_s, other.start_s)
     return max(common, 0.0) / whole
+
+
+@dataclass(frozen=True)
+class Channel:
+    """What one link does, one pair of bodies, or one object's carries: at most one at a time."""
+
+    name: str
+    true: tuple[Interval, ...]
+    found: tuple[Interval, ...]
+    silent: bool = False
+    """Whether a time without a label says that there was nothing; else it is not counted."""
+
+    open: tuple[Interval, ...] = ()
+    """When it is not counted, whatever was found."""
+
+    segments: tuple[Segment, ...] = ()
+    """The segments that it was found in, as they are printed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A stretch of time in which something else was found than is labelled."""
+
+    capture: str
+    channel: str
+    start_s: float
+    end_s: float
+    true: str
+    found: str
+    said: str
+    """The segments there, as they are printed: number and name."""
+
+    @property
+    def length_s(self) -> float:
+        """How long it lasts [s]."""
+        return self.end_s - self.start_s
+
+
+def differences(
+    capture: str, channels: Iterable[Channel], times: Float[np.ndarray, "frames"]
+) -> tuple[Difference, ...]:
+    """Every stretch of a capture in which a channel differs from its labels, in order of time."""
+    out: list[Difference] = []
+    for channel in channels:
+        true, found = (
+            np.array([each or NOTHING for each in frame_labels(marks, times)], dtype=object)
+            for marks in (channel.true, channel.found)
+        )
+        wrong = (true != found) & counted(channel, times)
+        pairs = sorted(set(zip(true[wrong], found[wrong], strict=True)))
+        for one, other in pairs:
+            for first, last in runs(wrong & (true == one) & (found == other)):
+                end_s = float(times[min(last + 1, len(times) - 1)])
+                start_s = float(times[first])
+                said = _said(channel.segments, start_s, end_s)
+                out.append(Difference(capture, channel.name, start_s, end_s, one, other, said))
+    return tuple(sorted(out, key=lambda each: (each.start_s, each.channel)))
+
+
+def worst(found: Iterable[Difference], *, most: int) -> tuple[Difference, ...]:
+    """The longest differences, longest first."""
+    ranked = sorted(found, key=lambda each: (-each.length_s, each.capture, each.channel,
+                                             each.start_s))  # fmt: skip
+    return tuple(ranked[:most])
+
+
+def counted(channel: Channel, times: Float[np.ndarray, "frames"]) -> Bool[np.ndarray, "frames"]:
+    """Whether each frame counts."""
+    out = np.full(len(times), channel.silent)
+    if not channel.silent:
+        out |= np.array([bool(each) for each in frame_labels(channel.true, times)], dtype=bool)
+    return np.asarray(out & ~inside(channel.open, times))
+
+
+def inside(
+    intervals: Sequence[Interval], times: Float[np.ndarray, "frames"]
+) -> Bool[np.ndarray, "frames"]:
+    """Whether each frame lies in one of the intervals: [start, end)."""
+    out = np.zeros(len(times), dtype=bool)
+    for interval in intervals:
+        out |= within(interval, times)
+    return out
+
+
+def _said(segments: Sequence[Segment], start_s: float, end_s: float) -> str:
+    there = [
+        each for each in segments if each.start_s < end_s - SAME_S and each.end_s > start_s + SAME_S
+    ]
+    return ", ".join(f"{each.index} {each.name}" for each in there)
+
+
+PARTS = {
+    Kind.ACTIONS: "links",
+    Kind.CONTACTS: "bodies",
+    Kind.CARRIES: "objects",
+    Kind.EVENTS: "events",
+    Kind.CONTAINERS: "containers",
+}
+"""What is scored on its own beside the whole."""
+
+WORST = 20
+"""So many differences are listed."""
+
+
+class Counts(Protocol):
+    """What is counted of one part of a capture; counts of several add up before they are scored."""
+
+    def __add__(self, other: Self) -> Self:
+        """Both together."""
+        ...
+
+    def scores(self) -> dict[str, Any]:
+        """The scores that follow, as plain values."""
+        ...
+
+
+@dataclass(frozen=True)
+class Scored:
+    """One capture held against its labels."""
+
+    name: str
+    times: Float[np.ndarray, "frames"]
+    """Time of each frame [s]."""
+
+    channels: tuple[Channel, ...]
+    parts: Mapping[str, Any]
+    """Counts of each part."""
+
+    whole: Any
+    """Counts of the capture."""
+
+    unlabelled: tuple[str, ...] = ()
+    """Parts that were observed and have no labels."""
+
+    notices: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Captures held against their labels."""
+
+    kind: Kind
+    captures: tuple[Scored, ...]
+    groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Names of captures that are also scored on their own."""
+
+    notices: tuple[str, ...] = ()
+    """What is odd about labels and mapping."""
+
+    @property
+    def cases(self) -> tuple[str, ...]:
+        """Names of the captures."""
+        return tuple(each.name for each in self.captures)
+
+    @property
+    def links(self) -> Mapping[str, Any]:
+        """Counts of each part, pooled over captures."""
+        return _parts(self.captures)
+
+    @property
+    def whole(self) -> Any:
+        """Counts of everything together."""
+        return _whole(self.captures)
+
+    @property
+    def unlabelled(self) -> tuple[str, ...]:
+        """Parts that were observed and bear no labels in any of the files: not counted."""
+        found = {name for each in self.captures for name in each.unlabelled}
+        return tuple(sorted(found - set(self.links)))
+
+    def differences(self) -> tuple[Difference, ...]:
+        """Every stretch in which something else was found than is labelled."""
+        return tuple(
+            found
+            for each in self.captures
+            for found in differences(each.name, each.channels, each.times)
+        )
+
+
+def report(evaluation: Evaluation) -> dict[str, Any]:
+    """An evaluation as plain values, for JSON."""
+    part = PARTS[evaluation.kind]
+    return {
+        "kind": str(evaluation.kind),
+        "captures": list(evaluation.cases),
+        "matched_at_percent": MATCH_AT,
+        **_scores(part, evaluation.captures),
+        "groups": {
+            name: {
+                "captures": list(members),
+                **_scores(part, [each for each in evaluation.captures if each.name in members]),
+            }
+            for name, members in evaluation.groups.items()
+        },
+        "by_capture": {each.name: _scores(part, [each]) for each in evaluation.captures},
+        "worst": [
+            {
+                "capture": each.capture,
+                "channel": each.channel,
+                "start_s": round(each.start_s, 3),
+                "end_s": round(each.end_s, 3),
+                "true": each.true,
+                "found": each.found,
+                "segments": each.said,
+            }
+            for each in worst(evaluation.differences(), most=WORST)
+        ],
+        f"unlabelled_{part}": list(evaluation.unlabelled),
+        "notices": [*evaluation.notices, *(n for c in evaluation.captures for n in c.notices)],
+    }
+
+
+def summed(counts: Iterable[Any]) -> Any:
+    """Counts of several together."""
+    return reduce(add, counts)
+
+
+def _scores(part: str, captures: Sequence[Scored]) -> dict[str, Any]:
+    return {
+        part: {name: counts.scores() for name, counts in _parts(captures).items()},
+        "all": _whole(captures).scores(),
+    }
+
+
+def _parts(captures: Sequence[Scored]) -> dict[str, Any]:
+    names = sorted({name for each in captures for name in each.parts})
+    return {
+        name: summed(each.parts[name] for each in captures if name in each.parts) for name in names
+    }
+
+
+def _whole(captures: Sequence[Scored]) -> Any:
+    return summed(each.whole for each in captures)

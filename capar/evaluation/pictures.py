@@ -3,9 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from capar.evaluation.comparisons import Channel, differences
-from capar.evaluation.evaluations import Evaluation, Scored
-from capar.evaluation.metrics import Interval, merged
+from capar.evaluation.metrics import Channel, Evaluation, Interval, Scored, differences, merged
 from capar.model.errors import FileError
 from capar.views.comparison import Lane, draw_comparison
 from capar.views.lettering import Span

@@ -5,19 +5,291 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
 from capar.evaluation.labels import Contradictions, Kind
-from capar.evaluation.mapping import LabelMapping, read_mapping
-from capar.evaluation.plan_schema import (
-    CarryOptions,
-    ContactArrays,
-    ContainerOptions,
-    EvaluationFile,
-)
+from capar.evaluation.metrics import Interval
 from capar.model.errors import CaparError, FileError, UnknownNameError
+from capar.model.observation import ObservedLink, Segment
 from extractors.readers.bundle.location import FILE, find_place, take_words
+from extractors.readers.schema.bodies import Positive
 from extractors.readers.schema.document import expanded, read_toml, substituted, validated
+from extractors.readers.schema.entry import Entry, key
+
+# ruff: noqa: RUF012  (pydantic copies the defaults of fields)
+
+
+class MappingRule(Entry):
+    """A label, and the segments that have it."""
+
+    name: Annotated[str, key("The segment's name, or one that it specialises; * fits all.")]
+    label: Annotated[str, key("The label.")]
+    object: Annotated[str, key("Among the segment's objects.")] = ""
+    dominant: Annotated[str, key("The segment's dominant object.")] = ""
+    position: Annotated[
+        Literal["before first", "after last", ""], key("Relative to the link's contacts.")
+    ] = ""
+    previous: Annotated[
+        str | None, key("Name of the segment before; empty if there must be none.")
+    ] = None
+    next: Annotated[str | None, key("Name of the segment after; empty if there must be none.")] = (
+        None
+    )
+
+
+class MappingFile(Entry):
+    """Rules in order, and names of links."""
+
+    links: Annotated[dict[str, str], key("Our link = the label file's, where they differ.")] = {}
+    rule: Annotated[list[MappingRule], key("Rules; the first that fits counts.")] = []
+    others: Annotated[
+        list[str], key("Labels that no rule gives and that may occur: those segments are missed.")
+    ] = []
+
+
+ANY = "*"
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """Which segments bear a label; an empty or missing condition fits all."""
+
+    name: str
+    label: str
+    object: str = ""
+    dominant: str = ""
+    position: str = ""
+    previous: str | None = None
+    next: str | None = None
+    where: str = ""
+    """File and line."""
+
+
+@dataclass(frozen=True, slots=True)
+class LabelMapping:
+    """Rules in order, and names of links."""
+
+    path: Path
+    rules: tuple[Rule, ...]
+    links: Mapping[str, str]
+    """Of the label file, by ours, where they differ."""
+
+    others: tuple[str, ...] = ()
+    """Labels that no rule gives and that may nevertheless occur."""
+
+    own_names: bool = False
+    """Whether the labels are our own names, so that a segment's label is its name."""
+
+    @property
+    def labels(self) -> set[str]:
+        """Every label that may occur."""
+        return {*(each.label for each in self.rules), *self.others}
+
+
+def read_mapping(path: Path) -> LabelMapping:
+    """Read a mapping file.
+
+    Raises:
+        CaparError: A key or a value is not as above; it names the line.
+    """
+    table = validated(MappingFile, *read_toml(path))
+    if not table.rule:
+        raise FileError(path, "has no rule.", 'Write [[rule]], name = "Reach", label = "approach".')
+    rules = tuple(Rule(**dict(each), where=each.where("name")) for each in table.rule)
+    return LabelMapping(path, rules, table.links, tuple(table.others))
+
+
+def own_names(names: Iterable[str]) -> LabelMapping:
+    """The mapping of labels that are our own names, as those of ``capar correct --labels``.
+
+    Args:
+        names: What segments can be called, and what else the labels may say.
+    """
+    return LabelMapping(Path(), (), {}, tuple(names), own_names=True)
+
+
+def check_names(
+    mapping: LabelMapping, *, names: Iterable[str], objects: Iterable[str], labels: Iterable[str]
+) -> tuple[str, ...]:
+    """Prove that every name in the rules is one that exists.
+
+    Args:
+        mapping: The rules.
+        names: What segments can be called.
+        objects: What objects are called.
+        labels: The labels that occur in the label files.
+
+    Returns:
+        A notice for each label that a rule gives and that is in no label file, as where the labels
+        are of one hand only.
+
+    Raises:
+        UnknownNameError: One does not; it lists those that do.
+    """
+    known = {"action": {*names, ANY}, "object": set(objects)}
+    occur = set(labels)
+    notices: dict[str, str] = {}
+    for rule in mapping.rules:
+        if rule.label not in occur:
+            text = f"{rule.where}: the label {rule.label!r} is in no label file"
+            notices.setdefault(rule.label, text)
+        wanted = [("action", rule.name)]
+        wanted += [("action", each) for each in (rule.previous, rule.next) if each]
+        wanted += [("object", each) for each in (rule.object, rule.dominant) if each]
+        for kind, name in wanted:
+            if name not in known[kind]:
+                raise UnknownNameError(kind, name, known[kind], where=rule.where)
+    return tuple(notices.values())
+
+
+def labelled(link: ObservedLink, mapping: LabelMapping) -> tuple[Interval, ...]:
+    """The segments of a link, with the times that are printed, under the labels of the rules.
+
+    Args:
+        link: The segments.
+        mapping: The rules.
+
+    Raises:
+        UnknownNameError: No rule fits a segment; it lists the names that have rules.
+    """
+    return tuple(
+        Interval(each.start_s, each.end_s, _label(link.segments, index, mapping))
+        for index, each in enumerate(link.segments)
+    )
+
+
+def _label(segments: Sequence[Segment], index: int, mapping: LabelMapping) -> str:
+    if mapping.own_names:
+        return segments[index].name
+    for rule in mapping.rules:
+        if _fits(rule, segments, index):
+            return rule.label
+    segment = segments[index]
+    place = f"{mapping.path}: {segment.ee} from {segment.start_s:.2f} s"
+    ruled = {each.name for each in mapping.rules}
+    raise UnknownNameError("fitting rule for", segment.name, ruled, where=place)
+
+
+def _fits(rule: Rule, segments: Sequence[Segment], index: int) -> bool:
+    segment = segments[index]
+    return (
+        rule.name in {ANY, segment.name, *segment.general}
+        and (not rule.object or rule.object in segment.objects)
+        and (not rule.dominant or segment.objects[:1] == (rule.dominant,))
+        and (not rule.position or POSITIONS[rule.position](segments, index))
+        and (rule.previous is None or _is(rule.previous, segments[:index][-1:]))
+        and (rule.next is None or _is(rule.next, segments[index + 1 : index + 2]))
+    )
+
+
+def _is(name: str, neighbour: Sequence[Segment]) -> bool:
+    """Whether the neighbour bears the name; an empty name means that there is none."""
+    if not neighbour or not name:
+        return not neighbour and not name
+    return name in {ANY, neighbour[0].name, *neighbour[0].general}
+
+
+def _before_first(segments: Sequence[Segment], index: int) -> bool:
+    return not any("1" in each.features.rel_start for each in segments[: index + 1])
+
+
+def _after_last(segments: Sequence[Segment], index: int) -> bool:
+    return not any("1" in each.features.rel_end for each in segments[index:])
+
+
+POSITIONS: dict[str, Callable[[Sequence[Segment], int], bool]] = {
+    "before first": _before_first,
+    "after last": _after_last,
+}
+"""Places in the sequence: before the first contact begins, and after the last one ends."""
+
+
+# ruff: noqa: RUF012  (pydantic copies the defaults of fields)
+
+
+class ContactArrays(Entry):
+    """Labels of contact as an array of an NPZ file: a value for each frame and body."""
+
+    labels: Annotated[str, key("Array of labels: (frames, bodies).")]
+    bodies: Annotated[str, key("Array of the bodies' names.")]
+    other: Annotated[str, key("What they touch; {...} stands for the take's words.")]
+    touching: Annotated[int, key("The value of a frame in which a body touches it.")] = 1
+    open: Annotated[int | None, key("The value of a frame that is not to be counted.")] = None
+
+
+class CarryOptions(Entry):
+    """How carries are found in what was observed, and what they are held against."""
+
+    names: Annotated[
+        list[str], key("Names of segments in which an object is carried, or what they specialise.")
+    ] = ["MoveObj", "MoveObjTo"]
+    within_s: Annotated[Positive, key("An end this near to the label is found.", unit="s")] = 0.1
+    moves_m: Annotated[
+        Positive, key("What moves less than this in its carry is excluded.", unit="m")
+    ] = 0.001
+    presence_of: Annotated[
+        str,
+        key(
+            "Name under ``[files]`` of a recording that has each object while it is carried, and "
+            "at no other time: its first and last pose are the labels."
+        ),
+    ] = ""
+    hand: Annotated[
+        str,
+        key("The sensor that carries, where ``presence_of`` is given: it goes with the object."),
+    ] = ""
+    extend_s: Annotated[
+        Positive,
+        key("How long the object rests before its first and after its last pose.", unit="s"),
+    ] = 2.0
+
+
+class ContainerOptions(Entry):
+    """Containers, into which objects are told to go or not."""
+
+    names: Annotated[list[str], key("Objects that are containers.")]
+    halves: Annotated[
+        bool, key("Whether each is parted across its middle into two containers.")
+    ] = False
+
+
+class EvaluationFile(Entry):
+    """Captures, labels, and what the labels are about."""
+
+    kind: Annotated[
+        Literal["actions", "contacts", "carries", "events", "containers"],
+        key("What the labels are about."),
+    ]
+    capture: Annotated[str, key("A bundle, relative to this file.")] = "capture.toml"
+    takes: Annotated[list[str], key("Patterns of the takes' names.")] = ["*"]
+    labels: Annotated[
+        str | None,
+        key(
+            "The label file, relative to this one; {take} and other words of the take are filled "
+            "in, ${NAME} is an environment variable."
+        ),
+    ] = None
+    mapping: Annotated[str | None, key("Actions: the mapping file, relative to this one.")] = None
+    frames_of: Annotated[str, key("File of the capture whose frames the labels count.")] = ""
+    contradictions: Annotated[
+        Literal["refuse", "leave-out"],
+        key("What to do about marks that end before they start or overlap."),
+    ] = "refuse"
+    events: Annotated[
+        list[str], key("Events: what counts if found and not labelled; else what is labelled.")
+    ] = []
+    names: Annotated[dict[str, str], key("The label files' name of a body = ours.")] = {}
+    groups: Annotated[
+        dict[str, list[str]], key("Patterns of takes that are also scored on their own, by name.")
+    ] = {}
+    contacts: Annotated[
+        ContactArrays | None, key("Contacts: labels that are arrays of an NPZ file.")
+    ] = None
+    carries: Annotated[CarryOptions | None, key("Carries: how they are found.")] = None
+    containers: Annotated[
+        ContainerOptions | None, key("Containers: which; the poses of objects are the labels.")
+    ] = None
+
 
 Progress: TypeAlias = Callable[[Sequence[Any]], Iterable[Any]]
 """Goes through a sequence in order, and may show how far it is: ``iter`` shows nothing."""
@@ -84,12 +356,12 @@ def read_plan(path: Path, *, takes: Sequence[str] = ()) -> Plan:
     table = validated(EvaluationFile, *read_toml(path))
     place = path.parent / table.capture
     words = take_words(place) or {"": {}}
-    chosen = [each for each in words if not each or _fits(each, table.takes)]
-    chosen = [each for each in chosen if not takes or _fits(each, takes)]
+    chosen = [each for each in words if not each or _fits_plan(each, table.takes)]
+    chosen = [each for each in chosen if not takes or _fits_plan(each, takes)]
     if not chosen:
         raise table.unknown("take", ", ".join(takes or table.takes), words, "takes")
     groups = {
-        name: tuple(each for each in chosen if _fits(each, patterns))
+        name: tuple(each for each in chosen if _fits_plan(each, patterns))
         for name, patterns in table.groups.items()
     }
     return Plan(
@@ -158,5 +430,5 @@ def _filled(labels: str, words: Mapping[str, str]) -> Path:
     return Path(substituted(labels, words))
 
 
-def _fits(take: str, patterns: Sequence[str]) -> bool:
+def _fits_plan(take: str, patterns: Sequence[str]) -> bool:
     return any(fnmatchcase(take, each) for each in patterns)

@@ -1,11 +1,10 @@
 """A plan carried out: captures observed and held against their labels, whatever these are about."""
 
-from capar.evaluation.carry_scores import score_carries
-from capar.evaluation.contact_scores import score_contacts
-from capar.evaluation.container_scores import score_containers
-from capar.evaluation.evaluations import Evaluation
-from capar.evaluation.event_scores import score_events
+from capar.evaluation.contacts import score_contacts
+from capar.evaluation.events import score_events
 from capar.evaluation.labels import Kind
+from capar.evaluation.metrics import Evaluation
+from capar.evaluation.objects import score_carries, score_containers
 from capar.evaluation.plan import Plan, Progress
 from capar.evaluation.scoring import score_actions
 from capar_rules.engine.profiles import DEFAULT, Profile, profile

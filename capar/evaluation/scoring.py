@@ -6,13 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from capar.evaluation.comparisons import Channel
-from capar.evaluation.evaluations import Evaluation, Scored, summed
-from capar.evaluation.label_files import read_labels
-from capar.evaluation.labels import Kind, Labels, check_known, check_span, in_seconds
-from capar.evaluation.mapping import LabelMapping, check_names, labelled, own_names
-from capar.evaluation.metrics import Interval, tally
-from capar.evaluation.plan import Pair, Plan, Progress
+from capar.evaluation.labels import Kind, Labels, check_known, check_span, in_seconds, read_labels
+from capar.evaluation.metrics import Channel, Evaluation, Interval, Scored, summed, tally
+from capar.evaluation.plan import (
+    LabelMapping,
+    Pair,
+    Plan,
+    Progress,
+    check_names,
+    labelled,
+    own_names,
+)
 from capar.model.capture import Capture
 from capar.model.errors import CaparError
 from capar.model.observation import Observation

@@ -6,8 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from capar.body.human import Human
-from capar.body.segment_poses import Poses, poses_of
+from capar.body.human import Human, Poses, poses_of
 from capar.body.skeleton import skeleton
 
 UNIT_M = 0.01

@@ -10,11 +10,9 @@ import numpy as np
 import trimesh
 from jaxtyping import Float
 
-from capar.body.body_shapes import Form, forms
-from capar.body.data_files import table
-from capar.body.form_meshes import form_mesh, joined
-from capar.body.human import Human
-from capar.body.segment_poses import Poses, poses_of
+from capar.body.anthropometry import table
+from capar.body.human import Human, Poses, poses_of
+from capar.body.shapes import Form, form_mesh, forms, joined
 from capar.body.skeleton import skeleton
 
 FLOAT, UNSIGNED = 5126, 5125

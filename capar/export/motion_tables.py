@@ -8,9 +8,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from capar.body.human import ROOT_SIZE, Human
-from capar.body.model import body_spec
-from capar.body.segment_poses import poses_of
+from capar.body.human import ROOT_SIZE, Human, body_spec, poses_of
 
 ROOT = (
     "pelvis_x_m", "pelvis_y_m", "pelvis_z_m", "pelvis_qw", "pelvis_qx", "pelvis_qy", "pelvis_qz",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from capar.body.human import Human
-from capar.body.things import Thing
+from capar.body.scenes import Thing
 from capar.pipelines.applicability import Abilities, Applied, check_applicable
 from capar.pipelines.recordings import Recording
 from capar.regeneration.bindings import (

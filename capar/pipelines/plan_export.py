@@ -3,10 +3,8 @@
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from capar.export.behavior_tree import behavior_tree
-from capar.export.bml import bml
 from capar.export.pddl import pddl
-from capar.export.plan_sources import PlanSource, plan_source
+from capar.export.plans import PlanSource, behavior_tree, bml, plan_source
 from capar.model.errors import UnknownNameError
 from capar.model.facts import Fact, Frames, LookingAt, RateMhz
 from capar.model.observation import Observation

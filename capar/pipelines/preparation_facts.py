@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.things import Thing
+from capar.body.scenes import Thing
 from capar.pipelines.preparing import Problem
 from capar.pipelines.ways import Way
 from capar.regeneration.bindings import kind_of

@@ -8,7 +8,7 @@ import numpy as np
 
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
-from capar.body.targets import CUTOFF_HZ
+from capar.body.sensors import CUTOFF_HZ
 from capar.model.capture import Capture
 from capar.model.errors import UnknownNameError
 from capar.model.facts import Touching

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from capar.export.plan_sources import PlanExportError, PlanSource, PlanStep, plan_source
+from capar.export.plans import PlanExportError, PlanSource, PlanStep, plan_source
 from capar.model.observation import Observation
 from capar.model.par import Upar
 from capar.pipelines.observation import observe

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 from scipy.spatial.transform import RigidTransform
 
-from capar.body.things import Thing
+from capar.body.scenes import Thing
 from capar.model.facts import Touching
 from capar.regeneration.errors import PlanError
 from capar.regeneration.holding import LOOSER, SETTLED_M, SETTLED_RAD, Hold

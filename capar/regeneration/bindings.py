@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from capar.body.things import Thing
+from capar.body.scenes import Thing
 from capar.model.capture import TagType
 from capar.model.errors import UnknownNameError
 from capar.regeneration.errors import PlanError

@@ -6,11 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from capar.body import things
-from capar.body.bundles import write_bundle
+from capar.body import scenes
 from capar.body.performing import Performance
-from capar.body.recording import Truth, record
-from capar.body.sensing import PERFECT, Tracker
+from capar.body.recording import Truth, record, write_bundle
+from capar.body.sensors import PERFECT, Tracker
 from capar.model.capture import Agent, Capture
 from capar.regeneration.motions import Motion
 from capar.regeneration.scenes import Scene
@@ -34,11 +33,11 @@ def capture_of(
     stated = {each: round(value, 4) for each, value in measures.values.items()}
     made = Performance(
         human=plan.human,
-        scene=things.Scene(plan.scene.things),
+        scene=scenes.Scene(plan.scene.things),
         script=(),
         times=np.array(plan.source.times),
         motion=motion.postures,
-        things=plan.things,
+        scenes=plan.things,
         phases=(),
         gazes=plan.looks,
         looks=(),

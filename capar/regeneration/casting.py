@@ -8,7 +8,7 @@ from scipy.spatial.transform import RigidTransform
 
 from capar.body.anthropometry import measures_of
 from capar.body.human import Human
-from capar.body.things import Thing
+from capar.body.scenes import Thing
 from capar.model.capture import Capture, Shape, TagType
 from capar.regeneration.errors import PlanError
 from capar.regeneration.scenes import Scene

@@ -10,8 +10,7 @@ from jaxtyping import Float
 from scipy.spatial import KDTree
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.human import Human
-from capar.body.model import body_spec
+from capar.body.human import Human, body_spec
 from capar.model.capture import Shape
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import vectors

@@ -7,7 +7,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform
 
 from capar.body.human import Human
-from capar.body.things import Thing
+from capar.body.scenes import Thing
 from capar.model.capture import TagType
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.scenes import Scene

@@ -9,8 +9,8 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.recording import HAND_SEGMENTS
-from capar.body.surfaces import segment_surface
-from capar.body.things import Thing
+from capar.body.scenes import Thing
+from capar.body.shapes import segment_surface
 from capar.model.capture import Sensor, Shape
 from capar.regeneration.body_frames import BodyFrames
 from capar.regeneration.collisions import Surroundings

@@ -12,7 +12,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
 from capar.body.recording import HAND_SEGMENTS
-from capar.body.surfaces import segment_surface
+from capar.body.shapes import segment_surface
 from capar.model.capture import Shape
 from capar.regeneration.errors import PlanError
 

@@ -3,9 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from capar.body.bundles import write_bundle
-from capar.body.joint_performances import joined
-from capar.body.recording import Truth
+from capar.body.recording import Truth, joined, write_bundle
 from capar.model.capture import Capture
 from capar.regeneration.captures import capture_of, truth_of_motion
 from capar.regeneration.joint_regenerating import JointMotion

@@ -8,8 +8,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform
 
-from capar.body.human import Human
-from capar.body.model import body_spec
+from capar.body.human import Human, body_spec
 from capar.regeneration.joint_sources import HandOver, JointSource
 from capar.regeneration.motions import Motion
 from capar.regeneration.quality import Gate, performed_hands

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from capar.body.things import Thing
+from capar.body.scenes import Thing
 from capar.model.capture import TagType
 from capar.model.facts import Leans, Lies
 from capar.model.observation import Observation

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from capar.body.things import Thing
+from capar.body.scenes import Thing
 from capar.regeneration.errors import PlanError
 from capar.regeneration.scenes import Scene
 from kb.language import Instruction, Plan, Question, parse

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from jaxtyping import Float
 
-from capar.body.things import Thing, Things
+from capar.body.scenes import Thing, Things
 from capar.model.capture import Shape, TagType
 
 FEET = ("_foot", "_toes")

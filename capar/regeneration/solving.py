@@ -8,11 +8,11 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.acting import RELAXED
 from capar.body.gaze import LOOK_COST, look_tasks, share_costs
 from capar.body.human import ROOT_SIZE, Human
+from capar.body.inverse_kinematics import Solver as Steps
+from capar.body.performing import RELAXED
 from capar.body.scripts import SIDES
-from capar.body.solving import Solver as Steps
 
 PALM_COST = (150.0, 10.0)
 """Weights of a metre and of a radian at the palms: so that balance does not cost a millimetre."""

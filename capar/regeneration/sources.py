@@ -9,9 +9,9 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import measures_of
 from capar.body.human import Human
+from capar.body.scenes import Thing
+from capar.body.sensors import CUTOFF_HZ, target
 from capar.body.skeleton import eyes_between
-from capar.body.targets import CUTOFF_HZ, target
-from capar.body.things import Thing
 from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagType
 from capar.model.facts import Displaced, Touching
 from capar.model.geometry import runs, transforms

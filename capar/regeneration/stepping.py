@@ -8,10 +8,10 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.balance import support
 from capar.body.human import Human
+from capar.body.inverse_kinematics import Solver as Steps
+from capar.body.inverse_kinematics import support
 from capar.body.scripts import SIDES, minimum_jerk
-from capar.body.solving import Solver as Steps
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import DAMPING_COST, FrameLimit
 from capar.regeneration.solving import Solver as Standing

@@ -6,14 +6,13 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from capar.body import things
-from capar.body.bundles import write_bundle
+from capar.body import scenes
 from capar.body.performing import Performance
-from capar.body.recording import Truth, record
+from capar.body.recording import Truth, record, write_bundle
+from capar.body.scenes import Thing, box
 from capar.body.scripts import SIDES
-from capar.body.sensing import PERFECT
-from capar.body.surfaces import segment_surface
-from capar.body.things import Thing, box
+from capar.body.sensors import PERFECT
+from capar.body.shapes import segment_surface
 from capar.model.capture import Agent, Capture, Sensor, Shape, TagType
 from capar.model.geometry import runs
 from capar.regeneration.stepping import Stepping
@@ -37,7 +36,7 @@ def capture_of_steps(made: Stepping, *, name: str, agent: str) -> Capture:
     ground = Thing(
         "floor", box(*FLOOR_M), (*scene.place, scene.floor_m - FLOOR_M[2]), tag=TagType.FIXED
     )
-    there = things.Scene({**scene.things, ground.name: ground})
+    there = scenes.Scene({**scene.things, ground.name: ground})
     paths = {n: RigidTransform.concatenate([t.pose] * count) for n, t in there.things.items()}
     ahead = AHEAD_M * np.array([np.cos(scene.heading), np.sin(scene.heading)])
     looks = np.column_stack([made.postures[:, :2] + ahead, np.full(count, scene.floor_m)])

@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.balance import support
 from capar.body.human import ROOT_SIZE
+from capar.body.inverse_kinematics import support
 from capar.body.scripts import SIDES
 from capar.regeneration.collisions import NEAR_M, Pair, Surroundings
 from capar.regeneration.quality import Gate, Quality, is_hand

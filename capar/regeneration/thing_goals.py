@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.things import Thing
+from capar.body.scenes import Thing
 from capar.model.facts import Displaced
 from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
 from capar.regeneration.collisions import Surroundings

@@ -6,21 +6,21 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from capar.body.anthropometry import ready_made
-from capar.body.balance import (
+from capar.body.gaze import share_costs
+from capar.body.human import Human
+from capar.body.inverse_kinematics import (
     MARGIN_M,
     BalanceLimit,
     BalanceTask,
+    Solver,
     Support,
     sole,
     standing_support,
     support,
 )
-from capar.body.gaze import share_costs
-from capar.body.human import Human
 from capar.body.performing import perform
+from capar.body.scenes import Thing, cup, scene, table
 from capar.body.scripts import slide
-from capar.body.solving import Solver
-from capar.body.things import Thing, cup, scene, table
 
 SLACK_M = 0.002
 """What the steps of inverse kinematics may go beyond a margin, as they are straight [m]."""

@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 from virtual_bodies.drinking import steps_of
 
-from capar.body.body_parts import with_body_parts
-from capar.body.capture_fitting import fit_capture
-from capar.body.fitting import Fit
+from capar.body.body_fitting import with_body_parts
 from capar.body.recording import record
 from capar.body.scripted_actions import performed
-from capar.body.sensing import PERFECT
+from capar.body.sensor_fitting import Fit, fit_capture
+from capar.body.sensors import PERFECT
 from capar.model.capture import Capture, TagType
 from capar.pipelines.observation import observe
 

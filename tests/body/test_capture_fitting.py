@@ -9,17 +9,14 @@ import pytest
 from typer.testing import CliRunner
 from virtual_bodies.trials import rms
 
-from capar.body.acting import RELAXED
 from capar.body.anthropometry import ready_made
-from capar.body.bundles import write_bundle
-from capar.body.capture_fitting import fit_capture, worn
-from capar.body.fitting import FitError
 from capar.body.human import Human
-from capar.body.mounting import places
-from capar.body.performing import Performance, perform
-from capar.body.recording import record, truth_of
+from capar.body.performing import RELAXED, Performance, perform
+from capar.body.recording import record, truth_of, write_bundle
+from capar.body.scenes import Thing, box, scene, table
 from capar.body.scripts import SIDES, touch
-from capar.body.things import Thing, box, scene, table
+from capar.body.sensor_fitting import FitError, fit_capture, worn
+from capar.body.sensors import places
 from capar.cli import app
 from capar.model import geometry
 from capar.model.capture import Capture, Sensor

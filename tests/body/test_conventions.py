@@ -9,7 +9,7 @@ from virtual_bodies.moving import swinging
 
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
-from capar.body.skeleton_fitting import SkeletonError, fit_skeleton, measures_from_points
+from capar.body.point_fitting import SkeletonError, fit_skeleton, measures_from_points
 from capar.model.errors import UnknownNameError
 from extractors.readers.body_names.conventions import (
     ConventionError,

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from capar.body.anthropometry import ready_made
-from capar.body.finger_postures import closings, with_closings
-from capar.body.fitting import Fit
+from capar.body.fingers import closings, with_closings
+from capar.body.fit_warnings import closed_hands
 from capar.body.human import Human
-from capar.body.recording_remarks import closed_hands
+from capar.body.sensor_fitting import Fit
 from capar.model import geometry
 from extractors.readers.body_names.body_names import BodyName
 

@@ -8,20 +8,19 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from capar.body.anthropometry import ready_made
-from capar.body.fit_remarks import remarks
-from capar.body.fitting import Fit
-from capar.body.human import Human
-from capar.body.marker_fitting import with_markers
-from capar.body.recording_remarks import (
+from capar.body.fit_warnings import (
     passing_legs,
     recorded_feet,
     recorded_spine,
+    remarks,
     stand_off,
 )
+from capar.body.human import Human
+from capar.body.marker_fitting import with_markers
+from capar.body.sensor_fitting import Fit
 from capar.model.capture import Capture
 from capar.model.notices import notice
-from capar.views.viewer.mannequin import with_mannequin
-from capar.views.viewer.stage import stage
+from capar.views.viewer.stage import stage, with_mannequin
 from extractors.readers.body_names.body_names import BodyName
 
 CAPTURE = motions.drink_from_mug(motions.WOMAN).capture

@@ -11,10 +11,9 @@ from virtual_bodies.trials import (
     virtual_trial,
 )
 
-from capar.body.fitting import Fit, FitError, fit
 from capar.body.human import Human
-from capar.body.mounting import CalibrationError, calibrate, places
-from capar.body.sensing import PERFECT, Tracker
+from capar.body.sensor_fitting import Fit, FitError, fit
+from capar.body.sensors import PERFECT, CalibrationError, Tracker, calibrate, places
 from capar.model.capture import Stream
 from capar.model.errors import UnknownNameError
 

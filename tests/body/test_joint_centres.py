@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from capar.body.joint_centres import cluster_of, joint_centre, joint_centres
+from capar.body.marker_fitting import cluster_of, joint_centre, joint_centres
 
 FRAMES = 80
 RNG = np.random.default_rng(4)

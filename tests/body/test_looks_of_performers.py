@@ -6,7 +6,7 @@ from virtual_bodies.looking import fixations, share_told
 
 from capar.body.recording import record
 from capar.body.scripted_actions import action_capture, performed
-from capar.body.sensing import PERFECT
+from capar.body.sensors import PERFECT
 
 pytestmark = pytest.mark.long
 

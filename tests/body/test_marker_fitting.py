@@ -11,15 +11,14 @@ from typer.testing import CliRunner
 from virtual_bodies.moving import swinging
 
 from capar.body.anthropometry import ready_made
+from capar.body.body_fitting import fit_body, fit_places, whole_body
 from capar.body.human import Human
 from capar.body.marker_fitting import fit_markers
-from capar.body.skeleton_fitting import SkeletonError, with_legs
-from capar.body.whole_bodies import fit_body, fit_places, whole_body
+from capar.body.point_fitting import SkeletonError, with_legs
 from capar.cli import app
 from capar.model import geometry
-from capar.views.viewer.mannequin import with_mannequin
 from capar.views.viewer.snapshot import snapshot
-from capar.views.viewer.stage import stage
+from capar.views.viewer.stage import stage, with_mannequin
 from extractors.readers.body_names.body_names import BodyName, body_names, parts
 from extractors.readers.body_names.conventions import conventions
 from extractors.readers.bundle.capture_toml import read_capture

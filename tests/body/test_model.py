@@ -10,14 +10,15 @@ from virtual_bodies.sizes import READY
 from capar.body.anthropometry import (
     MeasuresError,
     estimate_measures,
+    is_right,
     measure_names,
     measures_of,
+    mirrored,
     ready_made,
+    table,
 )
-from capar.body.data_files import is_right, mirrored, table
-from capar.body.hands import GraspError, grasp
-from capar.body.human import Human, PostureError
-from capar.body.model import body_spec, sensor_sites, site_rows
+from capar.body.fingers import GraspError, grasp
+from capar.body.human import Human, PostureError, body_spec, sensor_sites, site_rows
 from capar.body.skeleton import skeleton
 from capar.model.capture import Agent
 from capar.model.errors import UnknownNameError

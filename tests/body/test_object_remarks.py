@@ -9,10 +9,10 @@ import pytest
 from scipy.spatial import cKDTree
 
 from capar.body.anthropometry import ready_made
-from capar.body.fitting import Fit
+from capar.body.fit_warnings import _apart, object_remarks
 from capar.body.human import Human
-from capar.body.object_remarks import _apart, object_remarks
-from capar.body.things import box
+from capar.body.scenes import box
+from capar.body.sensor_fitting import Fit
 from capar.model.capture import Capture, TagObject, TagType
 
 CAPTURE = motions.drink_from_mug(motions.WOMAN).capture

@@ -8,11 +8,11 @@ import pytest
 
 from capar import regeneration
 from capar.body.anthropometry import ready_made
-from capar.body.bundles import write_bundle
 from capar.body.gaze import lines_of_sight
 from capar.body.human import Human
 from capar.body.performing import Performance, PerformanceError, perform
-from capar.body.recording import record, truth_of
+from capar.body.recording import record, truth_of, write_bundle
+from capar.body.scenes import Scene, Thing, box, cup, scene, table
 from capar.body.scripts import (
     Script,
     drink,
@@ -22,8 +22,7 @@ from capar.body.scripts import (
     slide,
     touch,
 )
-from capar.body.sensing import PERFECT, Tracker
-from capar.body.things import Scene, Thing, box, cup, scene, table
+from capar.body.sensors import PERFECT, Tracker
 from capar.model.errors import UnknownNameError
 from capar.regeneration.collisions import Pair, Surroundings
 from extractors.readers.bundle.capture_toml import read_capture

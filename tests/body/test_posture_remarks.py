@@ -8,10 +8,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from capar.body.anthropometry import ready_made
-from capar.body.fitting import Fit
+from capar.body.fit_warnings import posture_remarks
 from capar.body.human import Human
-from capar.body.posture_remarks import posture_remarks
-from capar.body.things import box
+from capar.body.scenes import box
+from capar.body.sensor_fitting import Fit
 from capar.model.capture import Capture
 
 CAPTURE = motions.drink_from_mug(motions.WOMAN).capture

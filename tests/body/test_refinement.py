@@ -13,11 +13,18 @@ from virtual_bodies.trials import (
     virtual_trial,
 )
 
-from capar.body.capture_fitting import fit_refined, worst_m
-from capar.body.fitting import Fit, fit
 from capar.body.human import Human
-from capar.body.mounting import Calibration, calibrate
-from capar.body.refinement import NOISE_M, Refinement, RefinementError, refine
+from capar.body.sensor_fitting import (
+    NOISE_M,
+    Fit,
+    Refinement,
+    RefinementError,
+    fit,
+    fit_refined,
+    refine,
+    worst_m,
+)
+from capar.body.sensors import Calibration, calibrate
 
 pytestmark = pytest.mark.long
 

@@ -8,11 +8,10 @@ from scipy.spatial.transform import Rotation
 from virtual_bodies.moving import swinging
 
 from capar.body.anthropometry import ready_made
+from capar.body.body_fitting import fit_body
 from capar.body.human import Human
-from capar.body.joint_fitting import fit_joints
-from capar.body.rigid_parts import rigid_places, rigid_shape
-from capar.body.skeleton_fitting import SkeletonFit
-from capar.body.whole_bodies import fit_body
+from capar.body.joint_fitting import fit_joints, rigid_places, rigid_shape
+from capar.body.point_fitting import SkeletonFit
 from capar.model import geometry
 from extractors.readers.body_names.body_names import SIDES
 from extractors.readers.body_names.conventions import convention

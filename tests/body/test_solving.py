@@ -4,12 +4,12 @@ import mink
 import numpy as np
 import pytest
 
-from capar.body.acting import RELAXED
 from capar.body.anthropometry import measures_of
 from capar.body.gaze import share_costs
 from capar.body.human import Human
+from capar.body.inverse_kinematics import Solver
+from capar.body.performing import RELAXED
 from capar.body.scripts import SIDES
-from capar.body.solving import Solver
 from capar.model.capture import Agent
 
 UPRIGHT_PALM = np.array([0.0, 0.5**0.5, 0.0, 0.5**0.5, 0.623, -0.16, 0.88])

@@ -12,14 +12,13 @@ from scipy.spatial.transform import Rotation
 from virtual_bodies.moving import swinging
 
 from capar.body.anthropometry import ready_made
-from capar.body.fitting import Fit
-from capar.body.flat_feet import GroundTask, UprightTask, standing_flat
+from capar.body.body_fitting import ground
 from capar.body.human import Human
+from capar.body.inverse_kinematics import GroundTask, UprightTask, standing_flat
 from capar.body.joint_fitting import fit_joints
 from capar.body.marker_fitting import fit_markers
-from capar.body.whole_bodies import ground
-from capar.views.viewer.mannequin import GROUND, with_mannequin
-from capar.views.viewer.stage import stage
+from capar.body.sensor_fitting import Fit
+from capar.views.viewer.stage import GROUND, stage, with_mannequin
 from extractors.readers.body_names.body_names import SIDES, BodyName, body_names
 from extractors.readers.body_names.conventions import convention
 

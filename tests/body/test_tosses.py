@@ -5,7 +5,7 @@ import pytest
 
 from capar.body.performing import Performance
 from capar.body.scripted_actions import action_capture, performed
-from capar.body.tosses import GRAVITY_MPS2, Toss, slowed, tossed
+from capar.body.scripts import GRAVITY_MPS2, Toss, slowed, tossed
 from capar.pipelines.observation import observe
 
 RATE_HZ = 60.0

@@ -5,10 +5,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from capar.body.anthropometry import ready_made
-from capar.body.fitting import fit
 from capar.body.human import Human
-from capar.body.mounting import calibrate
-from capar.body.sensing import PERFECT, sense, strap_on
+from capar.body.sensor_fitting import fit
+from capar.body.sensors import PERFECT, calibrate, sense, strap_on
 
 RATE_HZ = 60.0
 SIDES = ("right", "left")

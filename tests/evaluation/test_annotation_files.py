@@ -7,8 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pympi import Eaf, TextGrid
 
-from capar.evaluation.label_files import read_labels
-from capar.evaluation.labels import Kind, Label
+from capar.evaluation.labels import Kind, Label, read_labels
 from capar.model.errors import FileError
 
 Mark = tuple[str, int, int, str]

@@ -10,18 +10,16 @@ from measured_bodies import pick_and_place
 from motion_files import recordings_folder
 from observations import drink_from_mug
 
-from capar.evaluation.carry_captures import carry_captures
-from capar.evaluation.carry_scores import (
+from capar.evaluation.labels import Label, Labels
+from capar.evaluation.metrics import Interval, report, summed
+from capar.evaluation.objects import (
     CarryCounts,
     CarryEnds,
+    carry_captures,
     compare_carries,
     printed_carries,
 )
-from capar.evaluation.evaluations import report, summed
-from capar.evaluation.labels import Label, Labels
-from capar.evaluation.metrics import Interval
-from capar.evaluation.plan import read_plan
-from capar.evaluation.plan_schema import CarryOptions
+from capar.evaluation.plan import CarryOptions, read_plan
 from capar.evaluation.running import evaluate
 from capar.model.capture import Capture
 from capar.pipelines.observation import observe

@@ -8,12 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from motion_files import recordings_folder
 
-from capar.evaluation.contact_arrays import read_contact_arrays
-from capar.evaluation.contact_scores import ContactCounts, compare_contacts
-from capar.evaluation.evaluations import report, summed
+from capar.evaluation.contacts import ContactCounts, compare_contacts, read_contact_arrays
 from capar.evaluation.labels import Label, Labels
-from capar.evaluation.plan import read_plan
-from capar.evaluation.plan_schema import ContactArrays
+from capar.evaluation.metrics import report, summed
+from capar.evaluation.plan import ContactArrays, read_plan
 from capar.evaluation.running import evaluate
 from capar.model.errors import CaparError
 from capar.model.facts import Touching

@@ -7,10 +7,9 @@ import pytest
 from measured_bodies import box, pick_and_place
 from motion_files import recordings_folder
 
-from capar.evaluation.container_scores import count_landings
-from capar.evaluation.containers import Landing, halved, landings
-from capar.evaluation.evaluations import report
-from capar.evaluation.kinds import Kind
+from capar.evaluation.labels import Kind
+from capar.evaluation.metrics import report
+from capar.evaluation.objects import Landing, count_landings, halved, landings
 from capar.evaluation.plan import Plan, read_plan
 from capar.evaluation.running import evaluate
 from capar.model.capture import Capture, ShapeSource

@@ -10,9 +10,9 @@ from observations import drink_from_mug, pick_up_with_both_hands
 from typer.testing import CliRunner
 
 from capar.cli import app
-from capar.evaluation.evaluations import report
 from capar.evaluation.labels import Label, Labels
-from capar.evaluation.mapping import LabelMapping, Rule
+from capar.evaluation.metrics import report
+from capar.evaluation.plan import LabelMapping, Rule
 from capar.evaluation.scoring import Case, compare
 from capar.model.errors import CaparError, UnknownNameError
 from capar.model.observation import Observation

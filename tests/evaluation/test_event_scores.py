@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from measured_bodies import pick_and_place
 from motion_files import recordings_folder
 
-from capar.evaluation.evaluations import report
-from capar.evaluation.event_scores import Event, EventCounts, compare_events
+from capar.evaluation.events import Event, EventCounts, compare_events
 from capar.evaluation.labels import Label, Labels
+from capar.evaluation.metrics import report
 from capar.evaluation.plan import read_plan
 from capar.evaluation.running import evaluate
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 from motion_files import recordings_folder
 
-from capar.evaluation.evaluations import report
-from capar.evaluation.grasps import OVER_TABLE, PASS, REGRASP
+from capar.evaluation.events import OVER_TABLE, PASS, REGRASP
+from capar.evaluation.metrics import report
 from capar.evaluation.plan import read_plan
 from capar.evaluation.running import evaluate
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from capar.evaluation.evaluations import report
+from capar.evaluation.metrics import report
 from capar.evaluation.plan import read_plan
 from capar.evaluation.running import evaluate
 

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from capar.evaluation.label_files import read_labels
-from capar.evaluation.labels import Contradictions, Label, Labels, in_seconds
+from capar.evaluation.labels import Contradictions, Label, Labels, in_seconds, read_labels
 from capar.model.errors import FileError
 
 RECORDING = "bimacs_optitrack"

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from observations import drink_from_mug, with_unknown
 
-from capar.evaluation.mapping import LabelMapping, check_names, labelled, read_mapping
+from capar.evaluation.plan import LabelMapping, check_names, labelled, read_mapping
 from capar.evaluation.scoring import known_names
 from capar.model.errors import CaparError, UnknownNameError
 from capar.model.observation import Observation

@@ -12,11 +12,11 @@ from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.performing import perform
 from capar.body.recording import record
+from capar.body.scenes import Thing, box, cup, table
+from capar.body.scenes import scene as things_scene
 from capar.body.scripted_actions import action_capture
 from capar.body.scripts import SIDES, STAND, Hand, Move, Phase
-from capar.body.sensing import PERFECT
-from capar.body.things import Thing, box, cup, table
-from capar.body.things import scene as things_scene
+from capar.body.sensors import PERFECT
 from capar.model.capture import Capture, Shape, Stream, TagObject
 from capar.pipelines.round_trips import body, observed_source, round_trip
 from capar.regeneration import PlanError, Source

@@ -9,8 +9,8 @@ import pytest
 from exit_codes import exit_code
 from recorded_worlds import Worlds, worlds_in
 
+from capar.body.scenes import Thing, box, cup, table
 from capar.body.scripted_actions import action_capture
-from capar.body.things import Thing, box, cup, table
 from capar.model.capture import TagType
 from capar.model.errors import UnknownNameError
 from capar.pipelines.applicability import Applied, check_applicable

@@ -10,7 +10,7 @@ from scipy.spatial.transform import RigidTransform
 
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
-from capar.body.things import Thing, box
+from capar.body.scenes import Thing, box
 from capar.model.capture import Shape, TagType
 from capar.regeneration.clearing import CLEAR_M, ClearTask
 from capar.regeneration.collisions import NEAR_M, Surroundings

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from exit_codes import exit_code
 
-from capar.body.bundles import write_bundle
-from capar.body.recording import Truth
+from capar.body.recording import Truth, write_bundle
 from capar.body.scripted_actions import action_capture
 from capar.model.capture import Capture, Sensor, Stream
 from capar.model.errors import CaparError, FileError

@@ -10,8 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from capar.body.bundles import write_bundle
-from capar.body.recording import Truth
+from capar.body.recording import Truth, write_bundle
 from capar.body.scripted_actions import action_capture
 from capar.pipelines.round_trips import body, observed_source
 from capar.regeneration import Source, map_directly

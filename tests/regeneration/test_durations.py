@@ -13,7 +13,7 @@ from capar.body.performing import perform
 from capar.body.recording import record
 from capar.body.scripted_actions import action_capture, action_scene
 from capar.body.scripts import STAND, Hand, Move, Phase, Script
-from capar.body.sensing import PERFECT
+from capar.body.sensors import PERFECT
 from capar.model.facts import Touching
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe

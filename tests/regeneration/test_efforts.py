@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform
 
-from capar.body.bundles import write_bundle
-from capar.body.recording import Truth
+from capar.body.recording import Truth, write_bundle
 from capar.body.scripted_actions import action_capture
 from capar.model.errors import CaparError, UnknownNameError
 from capar.pipelines.observation import observe

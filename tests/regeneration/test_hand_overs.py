@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from exit_codes import exit_code
 
-from capar.body.bundles import write_bundle
-from capar.body.joint_actions import joint_capture, performed_together
-from capar.body.joint_performances import truth_together
+from capar.body.recording import truth_together, write_bundle
+from capar.body.scripted_actions import joint_capture, performed_together
 from capar.model.errors import CaparError, UnknownNameError
 from capar.pipelines.joint_round_trips import bodies, compared, observed_joint_source
 from capar.pipelines.trials import trial_of

@@ -12,8 +12,8 @@ import pytest
 from exit_codes import exit_code
 from recorded_worlds import Worlds, worlds_in
 
+from capar.body.scenes import Thing, box
 from capar.body.scripted_actions import ACTIONS, action_capture
-from capar.body.things import Thing, box
 from capar.model.capture import TagType
 from capar.model.errors import CaparError
 from capar.pipelines.instantiation import Asked, Instance, Knowledge, instantiate

@@ -10,8 +10,8 @@ import trimesh
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.recording import HAND_SEGMENTS
+from capar.body.scenes import Thing
 from capar.body.scripted_actions import action_capture
-from capar.body.things import Thing
 from capar.model.capture import Capture, Shape, Stream, TagType
 from capar.model.facts import Displaced, Touching
 from capar.pipelines.round_trips import body, observed_source

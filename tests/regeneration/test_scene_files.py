@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from capar.body.things import Thing, box, cup, table
+from capar.body.scenes import Thing, box, cup, table
 from capar.model.errors import CaparError, UnknownNameError
 from capar.regeneration.scene_files import DRAWS, Draw, drawn_scene, read_scene
 from capar.regeneration.scenes import Scene, raised, resized

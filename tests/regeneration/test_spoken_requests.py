@@ -9,8 +9,7 @@ import pytest
 from exit_codes import exit_code
 from spoken_worlds import DEMO, RATE_HZ, spoken, words, world
 
-from capar.body.bundles import write_bundle
-from capar.body.recording import Truth
+from capar.body.recording import Truth, write_bundle
 from capar.body.scripted_actions import action_capture
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe

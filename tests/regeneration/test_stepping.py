@@ -134,8 +134,7 @@ def test_places_that_need_fewer_steps_are_tried_first_and_told(
 
 
 def test_a_child_that_stands_too_far_away_steps_and_touches(tmp_path: Path) -> None:
-    from capar.body.bundles import write_bundle
-    from capar.body.recording import truth_of
+    from capar.body.recording import truth_of, write_bundle
     from capar.body.scripted_actions import performed
 
     write_bundle(_source().capture, truth_of(performed("touch", rate_hz=30.0)), tmp_path / "touch")

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from capar.views.number_places import Box, distance, meet
-from capar.views.viewer.body_labels import Labelled, leader, place_labels
+from capar.views.viewer.snapshot import Labelled, leader, place_labels
 
 PAGE = (9.0, 6.6)
 places = st.tuples(st.floats(3.0, 6.0), st.floats(2.0, 4.5))

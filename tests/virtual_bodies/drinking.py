@@ -6,9 +6,9 @@ from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.performing import perform
 from capar.body.recording import record
+from capar.body.scenes import Thing, cup, scene, table
 from capar.body.scripts import drink
-from capar.body.sensing import PERFECT, Tracker
-from capar.body.things import Thing, cup, scene, table
+from capar.body.sensors import PERFECT, Tracker
 from capar.model.capture import Capture
 from capar.model.observation import Observation
 

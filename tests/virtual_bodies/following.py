@@ -9,12 +9,11 @@ from jaxtyping import Bool, Float
 from motions.shapes import mouth
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.acting import RELAXED
-from capar.body.balance import BalanceLimit, BalanceTask, Support, sole, support
 from capar.body.gaze import share_costs
 from capar.body.human import Human
+from capar.body.inverse_kinematics import BalanceLimit, BalanceTask, Solver, Support, sole, support
+from capar.body.performing import RELAXED
 from capar.body.scripts import SIDES
-from capar.body.solving import Solver
 from capar.model import geometry
 from capar.model.capture import Capture, Sensor
 from capar.regeneration.hand_frames import body_hand_frame, hand_frame, palm_of

@@ -7,8 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from capar.body.anthropometry import ready_made
-from capar.body.data_files import mirrored
+from capar.body.anthropometry import mirrored, ready_made
 from capar.body.human import ROOT_SIZE, Human
 
 MILLIMETRE = 1e-3

@@ -7,10 +7,9 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.body.anthropometry import Measures, estimate_measures, ready_made
-from capar.body.fitting import Fit
 from capar.body.human import ROOT_SIZE, Human
-from capar.body.mounting import places
-from capar.body.sensing import Tracker, sense, strap_on
+from capar.body.sensor_fitting import Fit
+from capar.body.sensors import Tracker, places, sense, strap_on
 from capar.model.capture import Stream
 from virtual_bodies.moving import swinging
 

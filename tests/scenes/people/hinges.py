@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.acting import RELAXED
+from capar.body.performing import RELAXED
 from capar.body.scripts import SIDES
 from scenes.hands.paths import Times, min_jerk
 from scenes.people.stage import PeopleStage

@@ -1,18 +1,21 @@
-"""Where sensors sit on the body, from a reference posture held for a moment (thesis 3.1)."""
+"""Sensors on the body: where they sit, what a tracker records of them, and their filtered paths."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import Measures
-from capar.body.human import Human
-from capar.body.model import site_rows
+from capar.body.human import Human, site_rows
 from capar.model import geometry
 from capar.model.capture import Stream
 from capar.model.errors import CaparError, UnknownNameError
+from capar.model.geometry import runs
+from extractors.signals.filters import lowpass, lowpass_orientations
+from extractors.signals.gaps import fill_gaps
+from extractors.thresholds import Thresholds
 
 REFERENCE_S = 0.4
 """How long the reference posture is held at the start [s]."""
@@ -187,3 +190,156 @@ def _mount(
     share = PLACEMENT_M**2 / (PLACEMENT_M**2 + _chain(segment, measures))
     seat = RigidTransform.from_components(usual + share * moved, pose.rotation)
     return Mount(place, segment, seat), float(np.linalg.norm(moved))
+
+
+@dataclass(frozen=True)
+class Tracker:
+    """A tracker's faults; the defaults are those of a MotionStar in a good room."""
+
+    noise_m: float = 0.0015
+    """Deviation of a position about each axis [m]."""
+
+    noise_rad: float = float(np.radians(0.4))
+    """Deviation of an orientation about each axis [rad]."""
+
+    placement_m: float = 0.005
+    """Deviation of where a sensor is strapped from its nominal place, about each axis [m]."""
+
+    placement_rad: float = float(np.radians(15.0))
+    """Deviation of how it is turned there, about each axis [rad]."""
+
+    dropouts_per_s: float = 0.0
+    """Losses of one sensor a second."""
+
+    dropout_s: float = 0.05
+    """Mean length of a loss, exponentially distributed [s]."""
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        for name in self.__dataclass_fields__:
+            value = getattr(self, name)
+            if not 0.0 <= value < np.inf:
+                raise CaparError(f"{name} = {value}; a tracker's faults are not negative")
+
+
+PERFECT = Tracker(0.0, 0.0, 0.0, 0.0)
+"""A tracker without faults."""
+
+
+def strap_on(
+    human: Human, where: Iterable[str], tracker: Tracker, rng: np.random.Generator
+) -> dict[str, Mount]:
+    """Mount sensors near their nominal places.
+
+    Raises:
+        UnknownNameError: A place is none of the model's.
+    """
+    out = {}
+    for place in where:
+        if place not in places():
+            raise UnknownNameError("place of a sensor", place, places())
+        usual = human.model.site(f"sensor_{place}").pos
+        moved = usual + rng.normal(0.0, 1.0, 3) * tracker.placement_m
+        turn = Rotation.from_rotvec(rng.normal(0.0, 1.0, 3) * tracker.placement_rad)
+        out[place] = Mount(place, places()[place], RigidTransform.from_components(moved, turn))
+    return out
+
+
+def sense(
+    human: Human,
+    times: Float[np.ndarray, "frames"],
+    motion: Float[np.ndarray, "frames posture"],
+    mounts: Mapping[str, Mount],
+    tracker: Tracker,
+    rng: np.random.Generator,
+) -> dict[str, Stream]:
+    """The streams of the mounted sensors, by place."""
+    segments = human.sites(motion, {each.segment for each in mounts.values()})
+    out = {}
+    for place, mount in mounts.items():
+        spots, turns = segments[mount.segment]
+        frame = RigidTransform.from_components(spots, Rotation.from_quat(turns, scalar_first=True))
+        out[place] = recorded(times, frame * mount.pose, tracker, rng)
+    return out
+
+
+def recorded(
+    times: Float[np.ndarray, "frames"],
+    poses: RigidTransform,
+    tracker: Tracker,
+    rng: np.random.Generator,
+) -> Stream:
+    """A pose over time as a tracker records it."""
+    spots = poses.translation + rng.normal(0.0, 1.0, (len(times), 3)) * tracker.noise_m
+    shake = Rotation.from_rotvec(rng.normal(0.0, 1.0, (len(times), 3)) * tracker.noise_rad)
+    turns = (poses.rotation * shake).as_quat(scalar_first=True)
+    lost = _dropouts(times, tracker, rng)
+    spots[lost], turns[lost] = np.nan, np.nan
+    return Stream(times, spots, turns)
+
+
+def _dropouts(
+    times: Float[np.ndarray, "frames"], tracker: Tracker, rng: np.random.Generator
+) -> np.ndarray:
+    """Frames that are lost; neither the first nor the last is."""
+    lost = np.zeros(len(times), dtype=bool)
+    span = times[-1] - times[0]
+    for _ in range(int(rng.poisson(tracker.dropouts_per_s * span))):
+        start = times[0] + rng.uniform(0.0, span)
+        lost |= (times >= start) & (times < start + rng.exponential(tracker.dropout_s))
+    lost[[0, -1]] = False
+    return lost
+
+
+CUTOFF_HZ = 8.0
+"""Cutoff of the zero-phase filter [Hz]: above what hands do, below most of a tracker's noise."""
+
+GAP_S = 0.1
+"""Losses shorter than this are interpolated (spec 3) [s]."""
+
+FADE_S = 0.1
+"""How long a sensor takes to regain its full weight after a longer loss [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Target:
+    """The path of one sensor, and how far it is to be trusted."""
+
+    positions: Float[np.ndarray, "frames 3"]
+    """[m]; NaN where it was lost for long."""
+
+    orientations: Float[np.ndarray, "frames 4"]
+    """w x y z; NaN likewise."""
+
+    weights: Float[np.ndarray, "frames"]
+    """1 where it is known, 0 where it is lost, in between beside a loss [1]."""
+
+
+def target(stream: Stream, *, cutoff_hz: float | None = CUTOFF_HZ) -> Target:
+    """The target that a sensor's stream makes.
+
+    Args:
+        stream: As it was recorded.
+        cutoff_hz: Of the filter [Hz]; None leaves the stream as it is.
+    """
+    filled = fill_gaps(stream, gap_s=GAP_S)
+    weights = _weights(filled)
+    if cutoff_hz is None or filled.lost.all():
+        return Target(filled.positions, filled.orientations, weights)
+    settings = replace(Thresholds(), cutoff_hz=cutoff_hz)
+    return Target(
+        lowpass(filled.positions, filled.times, settings),
+        lowpass_orientations(filled.orientations, filled.times, settings),
+        weights,
+    )
+
+
+def _weights(stream: Stream) -> Float[np.ndarray, "frames"]:
+    """Weights that rise and fall smoothly beside a loss; the ends of a recording do not fade."""
+    out = np.where(stream.lost, 0.0, 1.0)
+    for first, last in runs(stream.lost):
+        before = (stream.times[max(first - 1, 0)] - stream.times) / FADE_S
+        after = (stream.times - stream.times[min(last + 1, len(out) - 1)]) / FADE_S
+        near = np.where(np.arange(len(out)) < first, before, after)
+        out = np.minimum(out, np.clip((near + 0.1) / 1.1, 0.0, 1.0))
+    return np.asarray(out * out * (3.0 - 2.0 * out))

@@ -1,15 +1,17 @@
-"""What the body looks like: capsules, ellipsoids and boxes about its segments."""
+"""The mannequin: capsules, ellipsoids and boxes about the segments, and their surfaces."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import trimesh
 from jaxtyping import Float
+from scipy.spatial.transform import Rotation
 
-from capar.body.anthropometry import Measures
-from capar.body.data_files import is_right, mirrored, table
-from capar.body.skeleton import BALL, HEEL, Segment, eyes_between
+from capar.body.anthropometry import Measures, is_right, mirrored, table
+from capar.body.skeleton import BALL, HEEL, Segment, eyes_between, skeleton
+from capar.model.capture import Shape
 
 CHIN_BELOW_EYES = 0.063
 """[share of stature]; Drillis & Contini 1966 have the chin at 0.870."""
@@ -139,3 +141,41 @@ def _foot(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
 def _mirror(form: Form) -> Form:
     flip = np.array([1.0, -1.0, 1.0])
     return replace(form, body=mirrored(form.body), centre=form.centre * flip, axis=form.axis * flip)
+
+
+def form_mesh(form: Form) -> trimesh.Trimesh:
+    """A primitive's surface in its segment's frame [m]."""
+    if form.kind == "box":
+        mesh: trimesh.Trimesh = trimesh.creation.box(extents=2.0 * form.half)
+    elif form.kind == "ellipsoid":
+        mesh = trimesh.creation.icosphere(subdivisions=2, radius=1.0)
+        mesh.vertices = np.array(mesh.vertices) * form.half
+    else:
+        radius, half = form.half[:2]
+        mesh = trimesh.creation.capsule(height=2.0 * half, radius=radius, count=[16, 12])
+        mesh.apply_translation(-mesh.bounds.mean(axis=0))
+        turn, _ = Rotation.align_vectors([form.axis / np.linalg.norm(form.axis)], [[0.0, 0.0, 1.0]])
+        mesh.vertices = turn.apply(np.array(mesh.vertices))
+    mesh.apply_translation(form.centre)
+    return mesh
+
+
+def joined(group: list[trimesh.Trimesh]) -> trimesh.Trimesh:
+    """Several surfaces as one."""
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in group)])
+    faces = [np.array(each.faces) + start for each, start in zip(group, starts, strict=False)]
+    vertices = np.concatenate([np.array(mesh.vertices) for mesh in group])
+    return trimesh.Trimesh(vertices, np.concatenate(faces), process=False)
+
+
+def segment_surface(measures: Measures, segments: tuple[str, ...], frame: str) -> Shape:
+    """The surface of some segments of the standing body, in the frame of one of them."""
+    bones = skeleton(measures)
+    parts = []
+    for form in forms(measures, bones):
+        if form.body in segments:
+            mesh = form_mesh(form)
+            mesh.apply_translation(bones[form.body].origin - bones[frame].origin)
+            parts.append(mesh)
+    mesh = sum(parts[1:], parts[0])
+    return Shape(np.array(mesh.vertices), np.array(mesh.faces), description=" and ".join(segments))

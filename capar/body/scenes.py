@@ -1,0 +1,287 @@
+"""Scenes of a performer: the shapes and places of objects, and how palms lie on them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+import numpy as np
+import trimesh
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.anthropometry import Measures
+from capar.body.shapes import PALM, PALM_FROM_WRIST
+from capar.model.capture import Shape, TagType
+from capar.model.errors import CaparError, UnknownNameError
+
+
+class SceneError(CaparError):
+    """A scene that cannot be, or that a performer cannot act in."""
+
+
+@dataclass(frozen=True, eq=False)
+class Thing:
+    """One object; its frame is in the middle of its bottom, z up."""
+
+    name: str
+    shape: Shape
+    place: tuple[float, float, float]
+    """Where its bottom's middle stands [m]."""
+
+    heading: float = 0.0
+    """Turn about z [rad]."""
+
+    tag: TagType = TagType.MOBILE
+    kind: str = ""
+    round: bool = False
+    """Whether it may be taken from any side."""
+
+    mass_kg: float | None = None
+
+    @property
+    def pose(self) -> RigidTransform:
+        """``T_world_thing`` at the beginning."""
+        return RigidTransform.from_components(self.place, Rotation.from_euler("z", self.heading))
+
+    @property
+    def size(self) -> Float[np.ndarray, "3"]:
+        """Of its box [m]."""
+        return self.shape.size
+
+
+@dataclass(frozen=True, eq=False)
+class Things:
+    """Things by name."""
+
+    things: Mapping[str, Thing]
+
+    def __post_init__(self) -> None:
+        """Make the things read-only."""
+        object.__setattr__(self, "things", MappingProxyType(dict(self.things)))
+
+    def thing(self, name: str) -> Thing:
+        """The thing of that name.
+
+        Raises:
+            UnknownNameError: There is none.
+        """
+        if name not in self.things:
+            raise UnknownNameError("thing", name, self.things, where="scene")
+        return self.things[name]
+
+
+@dataclass(frozen=True, eq=False)
+class Scene(Things):
+    """What is there; the floor is z = 0."""
+
+    things: Mapping[str, Thing] = field(default_factory=dict)
+
+    @property
+    def table(self) -> Thing | None:
+        """The first fixed thing, on which the others stand."""
+        fixed = (each for each in self.things.values() if each.tag is TagType.FIXED)
+        return next(fixed, None)
+
+
+def scene(*things: Thing) -> Scene:
+    """A scene of these things."""
+    return Scene({each.name: each for each in things})
+
+
+def box(x_m: float, y_m: float, z_m: float) -> Shape:
+    """A box standing on its frame's origin."""
+    made = trimesh.creation.box(extents=(x_m, y_m, z_m))
+    made.apply_translation((0.0, 0.0, 0.5 * z_m))
+    return _shape(made, f"box {x_m:g} x {y_m:g} x {z_m:g} m")
+
+
+def cup(radius_m: float, height_m: float, *, wall_m: float = 0.004) -> Shape:
+    """A cup without a handle, open above."""
+    wall = trimesh.creation.annulus(radius_m - wall_m, radius_m, height_m, sections=48)
+    wall.apply_translation((0.0, 0.0, 0.5 * height_m))
+    floor = trimesh.creation.cylinder(radius_m - 0.5 * wall_m, wall_m, sections=48)
+    floor.apply_translation((0.0, 0.0, 0.5 * wall_m))
+    return _shape(wall + floor, f"cup {2 * radius_m:g} m wide, {height_m:g} m high")
+
+
+def table(
+    height_m: float,
+    *,
+    near_m: float = 0.30,
+    depth_m: float = 0.60,
+    width_m: float = 1.20,
+    name: str = "table",
+) -> Thing:
+    """A table top whose near edge is a distance ahead of x = 0 [m]."""
+    top = box(depth_m, width_m, 0.03)
+    place = (near_m + 0.5 * depth_m, 0.0, height_m - 0.03)
+    return Thing(name, top, place, tag=TagType.FIXED, kind="table")
+
+
+def _shape(mesh: trimesh.Trimesh, description: str) -> Shape:
+    return Shape(np.array(mesh.vertices), np.array(mesh.faces), description=description)
+
+
+LEAF_M = (0.04, 0.60, 0.50)
+"""A cupboard door: how thick, wide and high [m]."""
+
+HINGE_M = 0.42
+"""How far the hinge is to the left of where the door is pushed [m]."""
+
+JAMB_M = 0.06
+"""How thick the posts beside a door are [m]."""
+
+GAP_M = 0.003
+"""Between what moves and what guides it [m]."""
+
+DRAWER_M = (0.36, 0.30, 0.12)
+"""A drawer: how deep, wide and high [m]."""
+
+BOARD_M = 0.02
+"""How thick the boards of a chest are [m]."""
+
+
+def door_scene(tall_m: float) -> Scene:
+    """A closed door at chest height between two posts, its hinge to the left.
+
+    The origin of the door's frame is below where it is pushed, a hand's length from its free edge.
+
+    Args:
+        tall_m: The performer's stature [m].
+    """
+    thick, wide, high = LEAF_M
+    place = (0.30 * tall_m, -0.06 * tall_m, 0.55 * tall_m)
+    middle = HINGE_M - 0.5 * wide
+    leaf = _boxes([((thick, wide, high), (0.5 * thick, middle, 0.5 * high))], "door leaf")
+    beside = 0.5 * (wide + JAMB_M) + GAP_M
+    posts = [
+        ((thick, JAMB_M, high), (0.5 * thick, middle + aside, 0.5 * high))
+        for aside in (beside, -beside)
+    ]
+    beam = ((thick, wide + 2.0 * (JAMB_M + GAP_M), JAMB_M),
+            (0.5 * thick, middle, high + GAP_M + 0.5 * JAMB_M))  # fmt: skip
+    frame = _boxes([*posts, beam], "posts and beam")
+    return scene(
+        Thing("frame", frame, place, tag=TagType.FIXED, kind="frame"),
+        Thing("door", leaf, place, kind="door"),
+    )
+
+
+def drawer_scene(tall_m: float) -> Scene:
+    """A closed drawer in a chest without a top, which the drawer overlooks a little.
+
+    Args:
+        tall_m: The performer's stature [m].
+    """
+    deep, wide, high = DRAWER_M
+    place = (0.32 * tall_m, -0.10 * tall_m, 0.50 * tall_m)
+    drawer = _boxes([((deep, wide, high), (0.5 * deep - 0.1, 0.0, 0.5 * high))], "drawer")
+    x, below = 0.5 * deep - 0.1, BOARD_M + GAP_M
+    sides = [
+        ((deep, BOARD_M, high), (x, sign * (0.5 * (wide + BOARD_M) + GAP_M), 0.5 * high - below))
+        for sign in (1.0, -1.0)
+    ]
+    floor = ((deep, wide + 2.0 * (BOARD_M + GAP_M), BOARD_M), (x, 0.0, -0.5 * BOARD_M - GAP_M))
+    back = ((BOARD_M, wide, high), (deep - 0.1 + 0.5 * BOARD_M + GAP_M, 0.0, 0.5 * high - below))
+    chest = _boxes([*sides, floor, back], "chest without a top")
+    return scene(
+        Thing("chest", chest, place, tag=TagType.FIXED, kind="chest"),
+        Thing("drawer", drawer, place, kind="drawer"),
+    )
+
+
+GUIDED = {"door": door_scene, "drawer": drawer_scene}
+"""Scenes by the action that they are for, of the performer's stature [m]."""
+
+
+def _boxes(
+    parts: list[tuple[tuple[float, float, float], tuple[float, float, float]]], description: str
+) -> Shape:
+    """Boxes of some sizes with their middles somewhere, as one shape [m]."""
+    vertices, faces = [], []
+    for number, (extents, middle) in enumerate(parts):
+        made = trimesh.creation.box(extents=extents)
+        vertices.append(np.array(made.vertices) + middle)
+        faces.append(np.array(made.faces) + number * len(made.vertices))
+    return Shape(np.concatenate(vertices), np.concatenate(faces), description=description)
+
+
+AIR_M = 0.0005
+"""What is left between palm and thing, so that surfaces touch and do not cut [m]."""
+
+CLEAR_M = 0.014
+"""How far a hand at a thing's side stays above what the thing stands on [m]."""
+
+WRIST_OUT_M = 0.022
+"""How far the wrist of a hand at a box's side is out of the box, and with it the forearm [m]."""
+
+YAWS = (0.0, -0.35, -0.7, -1.05, 0.35)
+"""Directions of the fingers tried on a round thing, outwards positive [rad]."""
+
+ROLLS = (0.0, 0.7, 1.2, 1.4, 1.57)
+"""How far the fingers on a thing's near side lean outwards from upright [rad]."""
+
+PITCHES = (0.0, 0.25, 0.5)
+"""Likewise their rise above the level [rad]."""
+
+
+def side_grip(
+    thing: Thing, side: str, measures: Measures, *, yaw: float = 0.0, pitch: float = 0.0
+) -> RigidTransform:
+    """``T_thing_palm`` of a hand at its own side of a thing, thumb up, fingers forward.
+
+    Args:
+        thing: Whose frame it is in; fingers point along its x axis.
+        side: ``right`` or ``left``.
+        measures: Whose hand; it stays clear of what the thing stands on.
+        yaw: Turn of the grip about the thing's axis, outwards positive [rad].
+        pitch: Rise of the fingers above the level [rad].
+    """
+    sign = 1.0 if side == "right" else -1.0
+    turn = Rotation.from_euler("z", -sign * yaw)
+    inwards = turn.apply([0.0, sign, 0.0])
+    fingers = turn.apply([np.cos(pitch), 0.0, np.sin(pitch)])
+    low, high = thing.shape.bounds
+    heel = PALM[0] * np.cos(pitch) + 0.44 * np.sin(pitch)
+    height = max(0.5 * (low[2] + high[2]), low[2] + heel * measures["hand_length"] + CLEAR_M)
+    reach = (-low[1] if side == "right" else high[1]) + AIR_M
+    place = np.array([0.0, 0.0, height]) - inwards * reach
+    if not thing.round:
+        wrist = PALM_FROM_WRIST * np.cos(pitch) * measures["hand_length"]
+        place[0] = min(0.0, low[0] - WRIST_OUT_M + wrist)
+    return RigidTransform.from_components(place, palm_turn(inwards, fingers))
+
+
+def top_grip(thing: Thing, side: str, measures: Measures, *, yaw: float = 0.0) -> RigidTransform:
+    """``T_thing_palm`` of a hand laid on top of a thing, fingers forward."""
+    sign = 1.0 if side == "right" else -1.0
+    fingers = Rotation.from_euler("z", sign * yaw).apply([1.0, 0.0, 0.0])
+    top = np.array([0.0, 0.0, thing.shape.bounds[1, 2] + AIR_M])
+    back = 0.1 * measures["hand_length"] * fingers
+    return RigidTransform.from_components(top - back, palm_turn([0.0, 0.0, -1.0], fingers))
+
+
+def back_grip(thing: Thing, side: str, measures: Measures, *, roll: float = 0.0) -> RigidTransform:
+    """``T_thing_palm`` of a hand on the side that faces the performer, fingers upwards.
+
+    Args:
+        thing: Whose frame it is in; its x axis leads away from the performer.
+        side: ``right`` or ``left``.
+        measures: Whose hand; its heel stays clear of what the thing stands on.
+        roll: How far the fingers lean outwards from upright [rad].
+    """
+    sign = 1.0 if side == "right" else -1.0
+    fingers = np.array([0.0, -sign * np.sin(roll), np.cos(roll)])
+    low, high = thing.shape.bounds
+    heel = PALM[0] * np.cos(roll) + 0.44 * np.sin(roll)
+    height = max(0.5 * (low[2] + high[2]), low[2] + heel * measures["hand_length"] + CLEAR_M)
+    place = np.array([low[0] - AIR_M, 0.0, height])
+    return RigidTransform.from_components(place, palm_turn([1.0, 0.0, 0.0], fingers))
+
+
+def palm_turn(
+    inwards: Float[np.ndarray, "3"] | list[float], fingers: Float[np.ndarray, "3"]
+) -> Rotation:
+    """Orientation of a palm that faces one way and whose fingers point another."""
+    z, x = np.asarray(inwards, dtype=float), np.asarray(fingers, dtype=float)
+    return Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=1))

@@ -1,0 +1,499 @@
+"""Claims about captures, in words and in files `*.motion.toml`, and their verdicts."""
+
+import re
+import tomllib
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from functools import cache
+from glob import glob
+from pathlib import Path
+from typing import TypeVar
+
+from capar.model.errors import CaparError, FileError, UnknownNameError
+from capar.model.facts import Fact, Frames, LookingAt, Moving, Touching
+from capar.model.observation import BOTH, Observation, Segment
+from capar.model.par import UNKNOWN
+from capar.pipelines.observation import observe
+from capar_rules.authoring.user_primitives import rules_of
+from capar_rules.authoring.user_rules import user_rules
+from capar_rules.engine.profiles import DEFAULT, Profile, profile
+from capar_rules.lint.admission import admitted_profile
+from extractors.readers.bundle.capture_toml import read_capture, takes
+
+STEP = re.compile(r"([A-Z]\w*)(?:\(([^()]*)\))?")
+"""A step of a claim, such as ``MoveObjTo(mug, head)``: its name, then its objects."""
+
+
+class ClaimError(CaparError):
+    """A claim that cannot be read, or that names what is not there."""
+
+
+class UnknownInClaimError(ClaimError, UnknownNameError):
+    """A name in a claim that nothing here bears."""
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """The names that exist in one capture, under one rule base."""
+
+    capture: str
+    primitives: frozenset[str]
+    ees: frozenset[str]
+    """End-effectors that act."""
+
+    kinds: frozenset[str]
+    """Their general types."""
+
+    objects: frozenset[str]
+    sensors: frozenset[str]
+    """Those with a line of sight."""
+
+    def ee(self, name: str) -> str:
+        """The name, if an end-effector of that name acts.
+
+        Raises:
+            UnknownInClaimError: None does; so too where another kind of name is wrong, below.
+        """
+        return self._one("acting end-effector", name, self.ees)
+
+    def object(self, name: str) -> str:
+        """The name, if an object has it."""
+        return self._one("object", name, self.objects)
+
+    def body(self, name: str) -> str:
+        """The name, if an object or an end-effector has it."""
+        return self._one("body", name, self.objects | self.ees)
+
+    def sensor(self, name: str) -> str:
+        """The name, if a sensor with a line of sight has it."""
+        return self._one("sensor that looks", name, self.sensors)
+
+    def pair(self, text: str) -> str:
+        """``both hands`` or ``both feet``, if any of that kind acts."""
+        kinds = {f"both {several}": kind for kind, several in BOTH.items()}
+        known = [each for each, kind in kinds.items() if kind in self.kinds]
+        return self._one("pair of acting end-effectors", text, known)
+
+    def step(self, text: str) -> str:
+        """The text, if it is a step whose primitive and objects there are."""
+        name, objects = parts(text)
+        self._one("primitive", name, self.primitives)
+        for thing in objects or ():
+            if thing != "_":
+                self._one("object", thing, self.objects | self.ees)
+        return text
+
+    def _one(self, kind: str, name: str, known: Collection[str]) -> str:
+        if name not in known:
+            raise UnknownInClaimError(kind, name, known, where=self.capture)
+        return name
+
+
+def parts(step: str) -> tuple[str, tuple[str, ...] | None]:
+    """The name of a step and its objects; None where it says nothing of objects.
+
+    Raises:
+        ClaimError: The text is no step.
+    """
+    found = STEP.fullmatch(step)
+    if found is None:
+        raise ClaimError(f"{step!r} is no step such as MoveObjTo(mug, head)")
+    if found[2] is None:
+        return found[1], None
+    return found[1], tuple(each.strip() for each in found[2].split(",") if each.strip())
+
+
+def names_of(
+    seen: Observation, *, rules: Profile | None = None, sensors: Iterable[str] = ()
+) -> Names:
+    """The names that claims about an observed capture may use.
+
+    Args:
+        seen: The observation.
+        rules: The rule base that it was observed with; None for what ships of its profile, and the
+            names that its segments bear.
+        sensors: Those with a line of sight, beside heads that act and those that are seen to look.
+    """
+    segments = {each for one in seen.segments for each in (one.name, *one.general)}
+    heads = {each.ee for each in seen.links if each.kind == "head"}
+    looking = {each.sensor for each in seen.facts if isinstance(each, LookingAt)}
+    return Names(
+        capture=seen.capture,
+        primitives=_primitives(rules or profile(seen.profile)) | segments | {UNKNOWN},
+        ees=frozenset(each.ee for each in seen.links),
+        kinds=frozenset(each.kind for each in seen.links),
+        objects=frozenset(each.name for each in seen.objects),
+        sensors=frozenset(looking | heads | set(sensors)),
+    )
+
+
+@cache
+def _primitives(rules: Profile) -> frozenset[str]:
+    return frozenset(each.name for each in rules_of(rules))
+
+
+Span = tuple[float, float]
+"""When something was, from one time to another [s]."""
+
+RELATIONS = ("begins before", "ends before", "before", "after", "while")
+
+HELP = (
+    "a claim is EVENT; no EVENT; EVENT before EVENT (or after, while, begins before, ends before); "
+    "EVENT lasts 0.5 to 2 s; or END_EFFECTOR: Name, Name, ... with its whole sequence. An event is "
+    "END_EFFECTOR Name(object, _); both hands do Name(object, _); BODY touches BODY; "
+    "BODY lets go of BODY; OBJECT moves; "
+    "HEAD looks at OBJECT; HEAD looks away from OBJECT"
+)
+
+
+_Kind = TypeVar("_Kind", bound=Fact)
+
+_NUMBER = r"\d+(?:\.\d*)?|\.\d+"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether a claim holds of a capture, and what was found instead."""
+
+    claim: str
+    capture: str
+    holds: bool
+    found: str
+    mistake: str = ""
+    """Why it could not be judged at all; else empty."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Scene:
+    """What was observed, and the names that may be spoken of."""
+
+    seen: Observation
+    names: Names
+
+
+def judge(claim: str, observation: Observation, *, names: Names | None = None) -> Verdict:
+    """Check a claim against an observed capture.
+
+    Args:
+        claim: In words; ``HELP`` says in which.
+        observation: The capture, observed.
+        names: What may be spoken of; None for what the observation itself shows.
+
+    Raises:
+        ClaimError: The claim cannot be read, or names what there is not.
+    """
+    scene = _Scene(observation, names or names_of(observation))
+    holds, found = _judged(claim.strip(), scene)
+    return Verdict(claim, observation.capture, holds, found)
+
+
+def _judged(claim: str, seen: _Scene) -> tuple[bool, str]:
+    sequence = re.fullmatch(r"(\w+):\s*(.+)", claim)
+    if sequence:
+        return _sequence(sequence[1], sequence[2], seen)
+    lasting = re.fullmatch(rf"(.+) lasts ({_NUMBER}) to ({_NUMBER}) s", claim)
+    if lasting:
+        spans = list(_event(lasting[1], seen))
+        low, high = float(lasting[2]), float(lasting[3])
+        if low > high:
+            raise ClaimError(
+                f"nothing lasts {lasting[2]} to {lasting[3]} s; the shorter time first"
+            )
+        times = [last - first for first, last in spans]
+        return bool(times) and all(low <= each <= high for each in times), _told(spans)
+    if claim.startswith("no "):
+        spans = list(_event(claim[3:], seen))
+        return not spans, _told(spans)
+    for relation in RELATIONS:
+        first, word, second = claim.partition(f" {relation} ")
+        if word:
+            return _related(first, relation, second, seen)
+    spans = list(_event(claim, seen))
+    return bool(spans), _told(spans)
+
+
+def _related(first: str, relation: str, second: str, seen: _Scene) -> tuple[bool, str]:
+    one, other = list(_event(first, seen)), list(_event(second, seen))
+    holds = any(_stand(each, relation, every) for each in one for every in other)
+    return holds, f"{first}: {_told(one)}; {second}: {_told(other)}"
+
+
+def _stand(one: Span, relation: str, other: Span) -> bool:
+    return {
+        "before": one[1] <= other[0],
+        "after": one[0] >= other[1],
+        "while": one[0] < other[1] and other[0] < one[1],
+        "begins before": one[0] < other[0],
+        "ends before": one[1] < other[1],
+    }[relation]
+
+
+def _sequence(ee: str, names: str, seen: _Scene) -> tuple[bool, str]:
+    """The whole sequence of an end-effector; ... stands for any steps."""
+    segments = _of(ee, seen)
+    wanted = [each.strip() for each in re.split(r",\s*(?![^()]*\))", names)]
+    for step in wanted:
+        if step != "...":
+            seen.names.step(step)
+    found = ", ".join(segment.name for segment in segments)
+    return _follows(wanted, list(segments)), f"{ee}: {found}"
+
+
+def _follows(wanted: list[str], segments: list[Segment]) -> bool:
+    if not wanted:
+        return not segments
+    if wanted[0] == "...":
+        return any(_follows(wanted[1:], segments[at:]) for at in range(len(segments) + 1))
+    return bool(segments and _fits(segments[0], wanted[0]) and _follows(wanted[1:], segments[1:]))
+
+
+def _fits(segment: Segment, text: str) -> bool:
+    """Whether a segment is of that name, or of one that specialises it, with those objects."""
+    name, objects = parts(text)
+    if name not in (segment.name, *segment.general):
+        return False
+    if objects is None:
+        return True
+    return len(objects) <= len(segment.objects) and all(
+        each in ("_", found) for each, found in zip(objects, segment.objects, strict=False)
+    )
+
+
+def _event(text: str, seen: _Scene) -> Iterator[Span]:
+    """When an event is."""
+    for pattern, spans in _EVENTS:
+        found = re.fullmatch(pattern, text)
+        if found:
+            return spans(found, seen)
+    raise ClaimError(f"{text!r} is no event; {HELP}")
+
+
+def _looks(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
+    pair = seen.names.sensor(found[1]), seen.names.object(found[3])
+    ending = found[2] != "at"
+    for look in _facts(seen, LookingAt):
+        if (look.sensor, look.object) == pair and not (ending and _cut_off(look.last, seen)):
+            yield _when(look.first, look.last, seen, ending=ending)
+
+
+def _meets(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
+    pair = {seen.names.body(found[1]), seen.names.body(found[3])}
+    if len(pair) == 1:
+        raise ClaimError(f"{found[0]!r}: nothing touches itself")
+    ending = found[2] != "touches"
+    spans = {
+        _when(each.first, each.last, seen, ending=ending)
+        for each in _facts(seen, Touching)
+        if {each.body, each.other} == pair and not (ending and _cut_off(each.last, seen))
+    }
+    return iter(sorted(spans))
+
+
+def _moves(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
+    name = seen.names.object(found[1])
+    for motion in _facts(seen, Moving):
+        if motion.object == name:
+            yield _when(motion.first, motion.last, seen, ending=False)
+
+
+def _step(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
+    segments, step = _of(found[1], seen), seen.names.step(found[2])
+    for segment in segments:
+        if _fits(segment, step):
+            yield segment.start_s, segment.end_s
+
+
+def _together(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
+    """When several end-effectors do a step as one action."""
+    both = found[1].startswith("both ")
+    who = [seen.names.pair(found[1])] if both else [*map(seen.names.ee, found[1].split(" and "))]
+    if len(set(who)) < len(who):
+        raise ClaimError(f"{found[0]!r} names an end-effector twice")
+    step = seen.names.step(found[2])
+    segments = {(segment.ee, segment.index): segment for segment in seen.seen.segments}
+    for joint in seen.seen.joint:
+        own = [segments[each] for each in zip(joint.ees, joint.segments, strict=True)]
+        acting = [seen.seen.who(joint)] if both else joint.who
+        if sorted(acting) == sorted(who) and all(_fits(each, step) for each in own):
+            yield joint.start_s, joint.end_s
+
+
+_EVENTS: tuple[tuple[str, Callable[[re.Match[str], _Scene], Iterator[Span]]], ...] = (
+    (r"(\w+) looks (at|away from) (\w+)", _looks),
+    (r"(\w+) (touches|lets go of) (\w+)", _meets),
+    (r"(\w+) moves", _moves),
+    (r"(both (?:hands|feet)|\w+(?: and \w+)+) do ([A-Z]\w*(?:\([^()]*\))?)", _together),
+    (r"(\w+) ([A-Z]\w*(?:\([^()]*\))?)", _step),
+)
+
+
+def _facts(seen: _Scene, kind: type[_Kind]) -> Iterator[_Kind]:
+    return (fact for fact in seen.seen.facts if isinstance(fact, kind))
+
+
+def _when(first: int, last: int, seen: _Scene, *, ending: bool) -> Span:
+    rate = seen.seen.rate_hz
+    return (last / rate, last / rate) if ending else (first / rate, last / rate)
+
+
+def _cut_off(last: int, seen: _Scene) -> bool:
+    """Whether something lasts until the capture's end: nobody saw it end."""
+    return any(each.last == last for each in _facts(seen, Frames))
+
+
+def _of(ee: str, seen: _Scene) -> Sequence[Segment]:
+    seen.names.ee(ee)
+    return next(link.segments for link in seen.seen.links if link.ee == ee)
+
+
+def _told(spans: Sequence[Span]) -> str:
+    return ", ".join(f"{first:.2f} to {last:.2f} s" for first, last in spans) or "never"
+
+
+SUFFIX = ".motion.toml"
+
+_EXAMPLE = (
+    'Write captures = ["drink_*"] and, for each claim, [[expect]] with '
+    'that = "right_hand MoveObjTo(mug, head)".'
+)
+
+
+@dataclass(frozen=True)
+class MotionTest:
+    """Claims, and the captures that they are made of."""
+
+    path: Path
+    captures: tuple[str, ...]
+    """Folders, or files, each with ``:TAKE`` where one of several takes is meant."""
+
+    claims: tuple[str, ...]
+    profile: str
+    rules: Path | None
+
+
+def read_motion_test(path: Path) -> MotionTest:
+    """Read a file of claims.
+
+    Raises:
+        FileError: It cannot be read, says something unknown, or names no capture that there is.
+    """
+    content = _content(path)
+    unknown = sorted(set(content) - {"captures", "expect", "profile", "rules"})
+    if unknown:
+        raise FileError(path, f"unknown key {unknown[0]!r}.", _EXAMPLE)
+    patterns = content.get("captures", [])
+    patterns = [patterns] if isinstance(patterns, str) else patterns
+    expected = content.get("expect", [])
+    if not isinstance(patterns, list) or not all(isinstance(each, str) for each in patterns):
+        raise FileError(path, "captures is no list of patterns.", _EXAMPLE)
+    if not isinstance(expected, list) or not expected:
+        raise FileError(path, "it expects nothing.", _EXAMPLE)
+    claims = [each.get("that") if isinstance(each, dict) else None for each in expected]
+    if not all(isinstance(each, str) for each in claims):
+        raise FileError(path, 'an [[expect]] has no that = "...".', _EXAMPLE)
+    rules = content.get("rules")
+    return MotionTest(
+        path,
+        tuple(dict.fromkeys(_captures(path, patterns))),
+        tuple(str(each) for each in claims),
+        str(content.get("profile", DEFAULT)),
+        path.parent / str(rules) if rules else None,
+    )
+
+
+def run_motion_test(
+    test: MotionTest, *, rules: Path | None = None, actionary: str | None = None
+) -> Iterator[Verdict]:
+    """Judge every claim of every capture; what cannot be judged is reported with the rest.
+
+    Args:
+        test: The claims and captures.
+        rules: Folder of the project's rules, where the test names none itself.
+        actionary: An Actionary whose rules count too; None for CAPAR_ACTIONARY's.
+
+    Raises:
+        CaparError: The rules have a fault, or there is no such profile.
+    """
+    files = user_rules(test.rules or rules, actionary=actionary)
+    base = _base(test.profile, files)
+    for capture in test.captures:
+        for claim in test.claims:
+            yield _verdict(claim, capture, base)
+
+
+def _verdict(claim: str, capture: str, base: Profile) -> Verdict:
+    name = Path(capture).name
+    try:
+        seen, names = _observed(capture, base)
+        name = seen.capture
+        return judge(claim, seen, names=names)
+    except (CaparError, OSError) as error:
+        return Verdict(claim, name, holds=False, found="", mistake=str(error))
+
+
+@cache
+def _base(name: str, added: tuple[Path, ...]) -> Profile:
+    return admitted_profile(name, added=added)
+
+
+@cache
+def _observed(capture: str, base: Profile) -> tuple[Observation, Names]:
+    trial = read_capture(capture)
+    looking = (
+        each.name
+        for each in trial.sensors
+        if each in trial.attending or each.end_effector == "head"
+    )
+    seen = observe(trial, rules=base)
+    return seen, names_of(seen, rules=base, sensors=looking)
+
+
+def _content(path: Path) -> dict[str, object]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise FileError(path, f"cannot be read: {error.strerror}.", _EXAMPLE) from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise FileError(path, f"is no TOML: {error}.", _EXAMPLE) from None
+
+
+def _captures(path: Path, patterns: Sequence[str]) -> Iterator[str]:
+    for pattern in patterns:
+        found = [str(each) for each in _places(path.parent, pattern)]
+        if not found and ":" in pattern:
+            found = _takes(path, pattern)
+        if not found:
+            raise FileError(path, f"no capture matches {pattern!r}.", _EXAMPLE)
+        yield from found
+
+
+def _places(folder: Path, pattern: str) -> list[Path]:
+    """Captures that a pattern means, from that folder on or, absolute, from the root."""
+    # Path.glob refuses absolute patterns.
+    found = glob(pattern, root_dir=folder, recursive=True, include_hidden=True)  # noqa: PTH207
+    return [folder / each for each in sorted(found) if _is_capture(folder / each)]
+
+
+def _takes(path: Path, pattern: str) -> list[str]:
+    """The takes that FOLDER:TAKE or FOLDER:* means, folders sorted, takes as they are declared.
+
+    Raises:
+        FileError: There are such folders, and none has such a take.
+        CaparError: A capture.toml cannot be read.
+    """
+    stem, _, wanted = pattern.rpartition(":")
+    folders = _places(path.parent, stem)
+    known = [(each, take) for each in folders for take in takes(each)]
+    found = [f"{each}:{take}" for each, take in known if fnmatchcase(take, wanted)]
+    if folders and not found:
+        names = ", ".join(dict.fromkeys(take for _, take in known))
+        there = f"Its takes are: {names}." if names else "It is one capture without takes."
+        raise FileError(path, f"no take matches {pattern!r}.", there)
+    return found
+
+
+def _is_capture(path: Path) -> bool:
+    if path.is_file():
+        return path.suffix == ".toml" and not path.name.endswith(SUFFIX)
+    return (path / "capture.toml").is_file()
