@@ -71,7 +71,7 @@ __all__ = [
 ]
 
 _register("html", "capar.views.page:observation_page")
-_register("frame", "capar.views.frames:observation_frame")
+_register("frame", "capar.views.tables:observation_frame")
 
 
 def open_actionary(

@@ -22,9 +22,9 @@ from capar.rulebook.changes import (
     renamed,
     stored,
 )
-from capar_rules.authoring.transaction import unbroken
+from capar_rules.authoring.user_rules import unbroken
 from capar_rules.engine.profiles import profile
-from capar_rules.lint.admission import admitted_profile
+from capar_rules.lint.checking import admitted_profile
 from kb.actionary import Actionary
 from kb.errors import StoreError
 from kb.lookup.changes import NamedSegment, source_files

@@ -18,7 +18,7 @@ from capar.pipelines.observation import observe
 from capar_rules.authoring.user_primitives import rules_of
 from capar_rules.authoring.user_rules import user_rules
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.lint.admission import admitted_profile
+from capar_rules.lint.checking import admitted_profile
 from extractors.readers.bundle.capture_toml import read_capture, takes
 
 STEP = re.compile(r"([A-Z]\w*)(?:\(([^()]*)\))?")

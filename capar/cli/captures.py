@@ -46,7 +46,7 @@ def inspect(
 
 def _calibration(place: str, settings: list[str], *, as_json: bool) -> None:
     from capar.model.json_form import to_json
-    from capar.views.calibration import calibration_tables
+    from capar.views.tables import calibration_tables
     from extractors.calibration import calibrate
     from extractors.readers.bundle.capture_toml import read_capture
     from extractors.set_values import set_values

@@ -457,7 +457,7 @@ def _print(observation: "Observation", *, json: bool, script: bool, pars: bool) 
         return
     _tables(observation)
     if pars:
-        from capar.views.text import par_text
+        from capar.views.tables import par_text
 
         for par in (observation.complex_par, *observation.upars, *observation.ipars):
             typer.echo()

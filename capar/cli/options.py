@@ -113,7 +113,7 @@ def rule_base(
         CaparError: A folder is none, or a rule file has a fault.
     """
     from capar_rules.authoring.user_rules import user_rules
-    from capar_rules.lint.admission import admitted_profile
+    from capar_rules.lint.checking import admitted_profile
 
     added = user_rules(rules, actionary=actionary)
     return admitted_profile(profile, added=added, steady=steady)

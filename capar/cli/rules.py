@@ -130,7 +130,7 @@ def _settling(change: "Renamed") -> str:
 
 def print_precedence(file: Path, over: Sequence[str]) -> None:
     """What the primitives of a file precede, where that was asked for."""
-    from capar_rules.authoring.catalogue import preceded
+    from capar_rules.authoring.user_primitives import preceded
 
     if over:
         for name, others in preceded(file).items():
@@ -342,9 +342,8 @@ def test(
 ) -> None:
     """Run the examples that FILE carries: what it must match, and what it must not."""
     from capar_rules.authoring.user_primitives import try_rule
-    from capar_rules.lint.admission import admit
+    from capar_rules.lint.checking import admit, require
     from capar_rules.lint.checking import check as checked
-    from capar_rules.lint.checking import require
 
     beside = _others(file, rules, actionary)
     admit(beside, profile=profile)
@@ -433,7 +432,7 @@ def remove(
     from capar.rulebook.changes import bearing, remove_reclassifying
     from capar_rules.authoring.user_primitives import introduced, removable
     from capar_rules.authoring.user_rules import actionary_rules, rule_files, user_rules
-    from capar_rules.lint.admission import admitted_profile
+    from capar_rules.lint.checking import admitted_profile
 
     place = opened(actionary)
     mine = actionary_rules(place)
@@ -477,9 +476,8 @@ def diff(
     from dataclasses import asdict
 
     from capar.rulebook.changes import captured, renamed, stored
-    from capar_rules.lint.admission import admitted_profile
+    from capar_rules.lint.checking import admitted_profile, require
     from capar_rules.lint.checking import check as checked
-    from capar_rules.lint.checking import require
 
     before = rule_base(profile, rules, opened(actionary))
     beside = _others(file, rules, actionary)
@@ -507,7 +505,7 @@ def audit(
     """Audit the whole rule base over every segment that there can be."""
     from dataclasses import asdict
 
-    from capar_rules.lint.profile_audit import audit as audited
+    from capar_rules.lint.world_checks import audit as audited
 
     found = audited(rule_base(profile, rules, opened(actionary)))
     if json:

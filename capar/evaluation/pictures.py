@@ -5,8 +5,8 @@ from pathlib import Path
 
 from capar.evaluation.metrics import Channel, Evaluation, Interval, Scored, differences, merged
 from capar.model.errors import FileError
-from capar.views.comparison import Lane, draw_comparison
 from capar.views.lettering import Span
+from capar.views.picture import Lane, draw_comparison
 
 CAPTURE = "{capture}"
 """What stands in a picture's name for the capture."""

@@ -16,7 +16,7 @@ from capar.model.observation import Observation, Segment, SegmentAddress, find_s
 from capar.pipelines.distances import apart_within, reaches
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
-from capar_rules.authoring.catalogue import rules_of
+from capar_rules.authoring.user_primitives import rules_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.explain.explanation import Explainer, Explanation
 from capar_rules.explain.measured import (

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from capar.model.errors import FileError, RuleError
-from capar_rules.authoring.examples import read_examples
+from capar_rules.authoring.user_primitives import read_examples
 from capar_rules.engine.solver import rule_file, solve
 from kb.lexicon.evidence import Case, Seen, seen_in
 from kb.lexicon.facts import lexical_facts, verbnet_members

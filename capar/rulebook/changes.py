@@ -8,10 +8,10 @@ from capar.model.facts import Fact
 from capar.model.observation import Observation
 from capar.pipelines.observation import facts_program
 from capar.pipelines.reobservation import observe_again
-from capar_rules.authoring.transaction import put_back, take_away, unbroken
 from capar_rules.authoring.user_primitives import checked_draft
+from capar_rules.authoring.user_rules import put_back, take_away, unbroken
 from capar_rules.engine.profiles import Profile
-from capar_rules.lint.admission import admitted_profile
+from capar_rules.lint.checking import admitted_profile
 from capar_rules.pars.inference import infer
 from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary

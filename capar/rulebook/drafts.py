@@ -9,18 +9,16 @@ from capar.model.facts import Fact
 from capar.model.observation import ObservedLink, Segment, find_segment, split_capture
 from capar.model.par import FeatureSet
 from capar.pipelines.observation import facts_program
-from capar_rules.authoring.examples import Example, written
-from capar_rules.authoring.excerpts import excerpt
-from capar_rules.authoring.required_facts import required_facts
-from capar_rules.authoring.telling_bits import bits_of, distinction, fitting, written_rule
-from capar_rules.authoring.user_primitives import LACKING, new_rule, rules_of
+from capar_rules.authoring.drafting import bits_of, distinction, excerpt, fitting, written_rule
+from capar_rules.authoring.glossary import required_facts
+from capar_rules.authoring.user_primitives import LACKING, Example, new_rule, rules_of, written
 from capar_rules.borders.border_numbers import Tick, number_borders
 from capar_rules.engine.profiles import Profile, profile
 from capar_rules.engine.slicing import FITS, signatures_below
 from capar_rules.engine.syntax import Statement, parse, parse_text
-from capar_rules.lint.admission import admitted_profile
-from capar_rules.lint.name_checks import rivals
+from capar_rules.lint.checking import admitted_profile
 from capar_rules.lint.text_checks import known
+from capar_rules.lint.world_checks import rivals
 from capar_rules.pars.inference import infer
 from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary

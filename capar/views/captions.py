@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from capar.views.lettering import Span, width_in
-from capar.views.painter import INK
 from capar.views.panels import Panel
+from capar.views.picture import INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,8 +9,8 @@ import numpy as np
 from capar.views.captions import together
 from capar.views.lettering import POINTS_PER_INCH, Span, width_in
 from capar.views.number_places import Box, Drawn, is_led, place_numbers
-from capar.views.painter import CONTACT, FAINT, QUIET, SPEED
 from capar.views.panels import Mark, Panel
+from capar.views.picture import CONTACT, FAINT, QUIET, SPEED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

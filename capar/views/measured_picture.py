@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 from capar.views.captions import caption_lines, draw_caption, together
 from capar.views.lettering import Span, width_in
 from capar.views.measured_panel import SHADE, draw_panel
-from capar.views.painter import CONTACT, FAINT, INK, QUIET
 from capar.views.panels import Panel, Row
-from capar.views.picture import save
+from capar.views.picture import CONTACT, FAINT, INK, QUIET, save
 from capar.views.segment_strip import Strip, draw_strip, strip
 
 if TYPE_CHECKING:

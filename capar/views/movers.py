@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from capar.model.body_names import is_plural, limb_names
 from capar.model.facts import MovedBy, Touching
 from capar.model.observation import Observation
-from capar.views.rows import spoken
+from capar.views.picture import spoken
 
 WORDS: Mapping[str, str] = {
     "carried": "moved by {0}",

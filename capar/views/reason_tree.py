@@ -7,7 +7,7 @@ from dataclasses import replace
 from capar.model.body_names import body_names
 from capar.model.observation import JointAction, Observation
 from capar.views.movers import joined
-from capar.views.rows import MOST_NAMED, spoken
+from capar.views.picture import MOST_NAMED, spoken
 from capar_rules.explain.explanation import Explanation, Reason
 
 JOINT, LOOKS, LOOK = "joins_in(", "looks(", "looking_at("

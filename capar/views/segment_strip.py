@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from capar.views.lettering import Placed, Span, place, shortened
-from capar.views.painter import INK, QUIET, UNNAMED, colour_of
+from capar.views.picture import INK, QUIET, UNNAMED, colour_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,13 +1,33 @@
-"""Segments and steps as tables: for a terminal, and as plain rows."""
+"""Observations, PARs and calibrations as tables and text: for a terminal, a file, a notebook."""
 
-from collections.abc import Collection, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict
+from functools import singledispatch
+from importlib import import_module
+from math import hypot
+from typing import TYPE_CHECKING, Any
 
+from capar.model.calibration import BodyCalibration, Calibration, Found, PairCalibration
+from capar.model.errors import CaparError, UnknownNameError
+from capar.model.facts import Touching
 from capar.model.observation import ForceStyle, Observation, ObservedLink, Segment, SegmentAddress
-from capar.model.par import ComplexPar, FeatureSet, Step
+from capar.model.par import (
+    Call,
+    ComplexPar,
+    Condition,
+    Constraint,
+    CoreSemantics,
+    FeatureSet,
+    Ipar,
+    Motion,
+    Preparation,
+    Step,
+    Upar,
+)
 
 if TYPE_CHECKING:
     from rich.table import Table
+
 
 SEGMENT_COLUMNS = ("segment", "start [s]", "end [s]", "name", "objects", "features", "purpose")
 STEP_COLUMNS = ("link", "step", "objects", "purpose", "begin", "share", "duration [s]")
@@ -212,3 +232,329 @@ def _escaped(cell: str) -> str:
     from rich.markup import escape
 
     return escape(cell)
+
+
+__all__ = [
+    "call",
+    "condition",
+    "force_lines",
+    "joint_lines",
+    "observation_text",
+    "par_text",
+    "preparation",
+    "segment_rows",
+    "segments_table",
+    "step_rows",
+    "steps_table",
+]
+
+Line = tuple[str, str]
+"""What is stated, and what it is."""
+
+END_EFFECTOR = -1
+"""The index that stands for the end-effector among colliding objects (thesis Fig 4.16)."""
+
+
+@singledispatch
+def par_text(par: object) -> str:
+    """A UPAR, an IPAR or a complex PAR as lines; equal PARs give equal text.
+
+    Numbers are rounded: times to a millisecond, places to a millimetre, shares to 0.0001.
+    """
+    raise TypeError(f"{type(par).__name__} is no PAR")
+
+
+@par_text.register
+def _upar(par: Upar) -> str:
+    head = f"UPAR {call(Call(par.name, (par.agent, *par.objects)))}"
+    lines = [
+        *_each("specialises", par.general),
+        *_each("applicable if", map(condition, par.applicability)),
+        *_each("prepare", map(preparation, par.preparation)),
+        *_each("step", map(call, par.steps)),
+        *_core(par.core, par.objects),
+        *_each("afterwards", map(condition, par.post_assertions)),
+        *_each("part of", filter(None, [par.parent])),
+    ]
+    return _block(head, lines)
+
+
+@par_text.register
+def _ipar(par: Ipar) -> str:
+    lines = [
+        ("end-effector", par.ee),
+        ("start", f"{par.start_s:.3f} s"),
+        *_each("prepare", map(preparation, par.preparation)),
+        *_core(par.core, par.objects),
+        *_each("afterwards", map(condition, par.post_assertions)),
+        *_each("posture", filter(None, [par.posture])),
+        *_each("part of", filter(None, [par.parent])),
+    ]
+    return _block(f"IPAR {call(Call(par.upar, (par.agent, *par.objects)))}", lines)
+
+
+@par_text.register
+def _complex(par: ComplexPar) -> str:
+    head = f"COMPLEX PAR {call(Call(par.name or 'unnamed', par.objects))}, {par.duration_s:.3f} s"
+    out = [head]
+    rows = [_step(step) for link in par.links for step in link.steps]
+    rows += [_step(par.common)] if par.common else []
+    table = iter(aligned(rows, right={3, 4}))
+    for link in par.links:
+        out += [f"  {link.ee} in sequence", *(f"    {next(table)}" for _ in link.steps)]
+    if par.common:
+        out += ["  all together, last", f"    {next(table)}"]
+    out += [
+        f"  {_place(each.first)} {each.relation} {_place(each.second)}" for each in par.relations
+    ]
+    return "\n".join(out) + "\n"
+
+
+def observation_text(observation: Observation) -> str:
+    """The segments, joint actions, forces, complex PAR, UPARs and IPARs of an observation."""
+    parts = [
+        "\n".join(aligned(segment_rows(observation), right={1, 2})) + "\n",
+        *filter(None, ["".join(f"{line}\n" for line in joint_lines(observation))]),
+        *filter(None, ["".join(f"{line}\n" for line in force_lines(observation))]),
+        par_text(observation.complex_par),
+        *map(par_text, observation.upars),
+        *map(par_text, observation.ipars),
+    ]
+    return "\n".join(parts)
+
+
+def call(value: Call) -> str:
+    """An action with its arguments: ``Reach(mug) for PickUp``."""
+    purpose = f" for {value.purpose}" if value.purpose else ""
+    return f"{value.action}({', '.join(value.objects)}){purpose}"
+
+
+def condition(value: Condition) -> str:
+    """A condition: ``contact(EE, obj1)``, or ``not contact(EE, obj1)``."""
+    return ("" if value.holds else "not ") + f"{value.kind}({', '.join(value.arguments)})"
+
+
+def preparation(value: Preparation) -> str:
+    """A condition, and what is done where it does not hold."""
+    return f"{condition(value.condition)}, else {call(value.action)}"
+
+
+def _core(core: CoreSemantics, objects: Sequence[str]) -> list[Line]:
+    moved = f" of {core.moved}" if core.moved else ""
+    caused = ", caused by the agent" if core.causal else ""
+    motion = "none" if core.motion is Motion.NONE else f"{core.motion.value}{moved}{caused}"
+    duration = "a parameter" if core.duration_s is None else f"{core.duration_s:.3f} s"
+    return [
+        ("motion", motion),
+        *_each("force on", core.force),
+        *_each("path", (f"({x:.3f}, {y:.3f}, {z:.3f}) m" for x, y, z in core.path)),
+        *_each("purpose", filter(None, [core.purpose])),
+        *_each("enables", core.enables),
+        *_each("until", map(condition, core.termination)),
+        ("duration", duration),
+        *_each("manner of", filter(None, [core.manner])),
+        *_constraint(core.constraint, objects),
+    ]
+
+
+def _constraint(constraint: Constraint, objects: Sequence[str]) -> list[Line]:
+    features = constraint.features
+    names = {END_EFFECTOR: "EE", **dict(enumerate(objects))}
+    pair = " with ".join(names.get(each, f"#{each}") for each in constraint.colliding_objects)
+    return [
+        ("collides", pair),
+        ("relations at start", features.rel_start or "-"),
+        ("relations at end", features.rel_end or "-"),
+        ("changes location", features.change_loc or "-"),
+        ("force", features.force or "-"),
+        ("end-effector type", features.end_effector),
+    ]
+
+
+def _step(step: Step) -> tuple[str, ...]:
+    return (
+        call(Call(step.action, step.objects)),
+        f"for {step.purpose}" if step.purpose else "",
+        f"to posture {step.posture}" if step.posture else "",
+        f"from {step.begin:.4f}",
+        f"share {step.share:.4f}",
+    )
+
+
+def _place(place: tuple[str, int]) -> str:
+    return f"{place[0]}[{place[1]}]"
+
+
+def _each(name: str, values: Iterable[str]) -> list[Line]:
+    """A line for each value, each with the name, so that a change shows as one line."""
+    return [(name, each) for each in values]
+
+
+def _block(head: str, lines: Sequence[Line]) -> str:
+    return "\n".join([head, *(f"  {each}" for each in aligned(lines))]) + "\n"
+
+
+BODY_COLUMNS = ("body", "noise mm", "noise deg", "floor mm", "floor deg", "highest m/s", "held")
+PAIR_COLUMNS = ("pair", "touch mm", "release mm", "of", "found by", "frames", "contradicts")
+_DEGREES = 57.29577951308232
+
+
+def calibration_tables(calibration: Calibration) -> tuple["Table", ...]:
+    """What was decided for the whole, for each body and for each pair."""
+    from rich.table import Table
+
+    whole = Table("calibration", "")
+    for name, value in whole_rows(calibration):
+        whole.add_row(name, value)
+    bodies = Table(*BODY_COLUMNS)
+    for body in (*calibration.sensors, *calibration.objects):
+        bodies.add_row(*_body_row(body))
+    pairs = Table(*PAIR_COLUMNS)
+    for pair in calibration.pairs:
+        pairs.add_row(*_pair_row(pair))
+    return whole, bodies, pairs
+
+
+def whole_rows(calibration: Calibration) -> tuple[tuple[str, str], ...]:
+    """Names and values of what holds for the whole recording."""
+    horizons = calibration.horizons
+    return (
+        ("step of the clock", f"{1e3 * calibration.step_s:.3f} ms"),
+        ("cutoff of the low-pass", f"{calibration.cutoff_hz:.2f} Hz"),
+        ("contact up to", f"{_mm(calibration.contact_tolerance_m)} mm"),
+        ("interruption closed below", f"{calibration.contact_dropout_s:.3f} s"),
+        ("contact dropped below", f"{calibration.contact_minimum_s:.3f} s"),
+        *(
+            (f"feet of {level.agent} stand at", f"{level.height_m:.3f} m")
+            for level in calibration.foot_levels
+        ),
+        *(
+            (f"{each.ground} under {each.agent} moves at", f"{hypot(*each.velocity_mps):.2f} m/s")
+            for each in calibration.moving_grounds
+        ),
+        ("half length of the low-pass", f"{horizons.filter_s:.3f} s"),
+        ("extrema of speed compared within", f"{horizons.extremum_s:.3f} s"),
+        ("margin of a window", f"{horizons.margin_s:.3f} s"),
+    )
+
+
+def _pair_row(pair: PairCalibration) -> tuple[str, ...]:
+    """How two bodies touch, how that was found, and what the recording shows against it."""
+    names = f"{pair.first} {pair.second}"
+    if pair.found is Found.NEVER:
+        return names, "-", "-", "-", pair.found.value, "", ""
+    estimated = pair.found not in (Found.STATED, Found.TOLERANCE)
+    kind = ("points" if estimated else "origins") if pair.pivots else "surfaces"
+    shown = "" if pair.shown_m is None else f"{_mm(pair.shown_m)} mm"
+    frames = str(pair.frames) if pair.frames else ""
+    return names, _mm(pair.touch_m), _mm(pair.release_m), kind, pair.found.value, frames, shown
+
+
+def _body_row(body: BodyCalibration) -> tuple[str, ...]:
+    held = "at its median" if body.fixed else ("recorded still" if body.still else "")
+    return (
+        body.name,
+        _mm(body.noise_m),
+        f"{_DEGREES * body.noise_rad:.3f}",
+        _mm(body.motion_floor_m),
+        f"{_DEGREES * body.motion_floor_rad:.2f}",
+        f"{body.highest_speed_mps:.2f}",
+        held,
+    )
+
+
+def _mm(length_m: float) -> str:
+    return f"{1e3 * length_m:.2f}"
+
+
+Row = dict[str, Any]
+
+
+def observation_frame(observation: Observation, of: str) -> Any:
+    """A DataFrame of an observation.
+
+    Args:
+        observation: What was understood of a capture.
+        of: ``segments``, ``contacts`` or ``facts``; each is a row.
+
+    Raises:
+        UnknownNameError: There is no frame of that.
+        CaparError: pandas is not installed.
+    """
+    if of not in FRAMES:
+        raise UnknownNameError("data frame", of, FRAMES)
+    columns, rows = FRAMES[of]
+    return _pandas().DataFrame(list(rows(observation)), columns=list(columns))
+
+
+def _pandas() -> Any:
+    try:
+        return import_module("pandas")
+    except ModuleNotFoundError as error:
+        if error.name != "pandas":
+            raise
+        raise CaparError(
+            "data frames need pandas, which is not installed; it comes with the extra 'frames': "
+            "pip install 'capar[frames]'"
+        ) from None
+
+
+def _segments(observation: Observation) -> Iterator[Row]:
+    for segment in observation.segments:
+        yield {
+            "capture": observation.capture,
+            "performer": observation.performer(segment.ee),
+            "ee": segment.ee,
+            "index": segment.index,
+            "name": segment.name,
+            "objects": segment.objects,
+            "start_s": segment.start_s,
+            "end_s": segment.end_s,
+            "first": segment.first,
+            "last": segment.last,
+            "possessed": segment.possessed,
+            "purpose": segment.purpose,
+            **asdict(segment.features),
+        }
+
+
+def _contacts(observation: Observation) -> Iterator[Row]:
+    for fact in observation.facts:
+        if isinstance(fact, Touching):
+            yield {
+                "capture": observation.capture,
+                "body": fact.body,
+                "other": fact.other,
+                "start_s": fact.first / observation.rate_hz,
+                "end_s": fact.last / observation.rate_hz,
+                "first": fact.first,
+                "last": fact.last,
+            }
+
+
+def _facts(observation: Observation) -> Iterator[Row]:
+    for fact in observation.facts:
+        yield {
+            "capture": observation.capture,
+            "predicate": fact.predicate,
+            "arguments": tuple(asdict(fact).values()),
+            "atom": str(fact),
+        }
+
+
+FRAMES: Mapping[str, tuple[tuple[str, ...], Callable[[Observation], Iterator[Row]]]] = {
+    "segments": (
+        (
+            "capture", "performer", "ee", "index", "name", "objects", "start_s", "end_s", "first",
+            "last", "possessed", "purpose", "rel_start", "rel_end", "change_loc", "end_effector",
+            "force",
+        ),
+        _segments,
+    ),
+    "contacts": (
+        ("capture", "body", "other", "start_s", "end_s", "first", "last"),
+        _contacts,
+    ),
+    "facts": (("capture", "predicate", "arguments", "atom"), _facts),
+}  # fmt: skip
+"""Columns and rows of each frame; times [s] take frames as evenly spaced."""

@@ -1,12 +1,13 @@
 """Rules that people write: new ones from what was seen, trying, adding and removing them."""
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from capar.model.errors import FileError, RuleError, UnknownNameError
+from capar.model.errors import CaparError, FileError, RuleError, UnknownNameError
 from capar.model.facts import (
     Fact,
     ForceTransfer,
@@ -18,23 +19,278 @@ from capar.model.facts import (
     Tag,
     Touching,
     ZeroCrossing,
+    read_fact,
 )
 from capar.model.par import FeatureSet
-from capar_rules.authoring.catalogue import RuleInfo as RuleInfo
-from capar_rules.authoring.catalogue import dependants
-from capar_rules.authoring.catalogue import introduced as introduced
-from capar_rules.authoring.catalogue import rule_of as rule_of
-from capar_rules.authoring.catalogue import rules_of as rules_of
-from capar_rules.authoring.examples import Example, lacking, read_examples, try_examples, written
-from capar_rules.authoring.user_rules import make_folder, taught
+from capar_rules.authoring.user_rules import actionary_rules, make_folder, taught
 from capar_rules.authoring.user_rules import user_rules as user_rules
-from capar_rules.engine.profiles import DEFAULT, profile
-from capar_rules.engine.syntax import parse, parse_text
-from capar_rules.lint.admission import admitted_profile
-from capar_rules.lint.checking import check, require
+from capar_rules.engine.profiles import DEFAULT, Profile, profile
+from capar_rules.engine.slicing import FITS
+from capar_rules.engine.syntax import Statement, parse, parse_text, split_arguments
+from capar_rules.lint.checking import admitted_profile, check, require
 from capar_rules.lint.findings import errors
-from capar_rules.lint.name_checks import rivals
-from capar_rules.lint.text_checks import known
+from capar_rules.lint.text_checks import known, read_rules
+from capar_rules.lint.world_checks import rivals
+from capar_rules.pars.inference import infer
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class RuleInfo:
+    """One primitive and where it comes from."""
+
+    name: str
+    origin: str
+    """``core`` if it ships, ``user`` if it is beside the Actionary, ``project`` otherwise."""
+
+    file: str
+    definition: str
+    verb: str
+    general: tuple[str, ...]
+
+
+def rules_of(base: Profile, *, actionary: str | Path | None = None) -> tuple[RuleInfo, ...]:
+    """Every primitive of a rule base, by name.
+
+    Args:
+        base: The rule base.
+        actionary: The Actionary whose rules are the user's own; None for ``CAPAR_ACTIONARY``'s.
+    """
+    statements = parse(base.files)
+    mine = actionary_rules(actionary)
+    origins = {
+        str(each): "user" if mine and each.resolve().parent == mine.resolve() else "project"
+        for each in base.added
+    }
+    verbs = dict(_pairs(statements, "verb"))
+    general: dict[str, list[str]] = {}
+    for name, other in _pairs(statements, "specialises"):
+        general.setdefault(name, []).append(other)
+    heads: dict[str, str] = {}
+    for each in statements:
+        if each.kind == "comment":
+            heads.setdefault(each.place.file, each.text)
+    found = [
+        RuleInfo(
+            split_arguments(statement.heads[0].text)[0].strip('"'),
+            origins.get(statement.place.file, "core"),
+            statement.place.file,
+            _definition(heads.get(statement.place.file, "")),
+            "",
+            (),
+        )
+        for statement in statements
+        if statement.heads and statement.heads[0].signature == ("primitive", 1)
+    ]
+    return tuple(
+        sorted(
+            replace(each, verb=verbs.get(each.name, ""), general=tuple(general.get(each.name, ())))
+            for each in found
+        )
+    )
+
+
+def rule_of(base: Profile, name: str, *, actionary: str | Path | None = None) -> RuleInfo:
+    """One primitive of a rule base.
+
+    Raises:
+        UnknownNameError: There is none of that name.
+    """
+    known = {each.name: each for each in rules_of(base, actionary=actionary)}
+    if name not in known:
+        raise UnknownNameError("primitive", name, known)
+    return known[name]
+
+
+def _pairs(statements: Sequence[Statement], predicate: str) -> Iterator[tuple[str, str]]:
+    for statement in statements:
+        for head in statement.heads:
+            if head.signature == (predicate, 2):
+                first, second = split_arguments(head.text)
+                yield first.strip('"'), second.strip('"')
+
+
+def _definition(comment: str) -> str:
+    text = " ".join(comment.strip("%* \n").split())
+    return text.partition(": ")[2] or text
+
+
+_LIKELY = re.compile(r'\bprimitive\s*\(\s*"([^"\n]*)"\s*\)\s*\.')
+
+
+def introduced(path: Path) -> list[str]:
+    """The primitives that a rule file introduces, in order.
+
+    Of a file with syntax errors, those that it seems to introduce, so that it can be removed.
+    """
+    reading = read_rules(path, folders=(path.parent,))
+    if reading.findings:
+        return list(dict.fromkeys(_LIKELY.findall(reading.text)))
+    return list(
+        dict.fromkeys(
+            split_arguments(head.text)[0].strip('"')
+            for each in reading.statements
+            for head in each.heads
+            if head.signature == ("primitive", 1)
+        )
+    )
+
+
+ORDERING = (("specialises", 2), ("precedes", 2))
+"""Predicates whose second argument is another primitive."""
+
+
+def dependants(path: Path, *, files: Sequence[Path]) -> dict[str, Path]:
+    """Primitives of other rule files that depend on what a file introduces, each with its file.
+
+    They specialise or precede it, or a rule of theirs asks whether a segment fits it.
+    """
+    names = set(introduced(path))
+    found: dict[str, Path] = {}
+    for each in files:
+        if each.resolve() != path.resolve():
+            reading = read_rules(each, folders=(each.parent,))
+            if any(names & _read(rule) for rule in reading.statements):
+                found |= dict.fromkeys(introduced(each) or [each.stem], each)
+    return found
+
+
+def preceded(path: Path) -> dict[str, list[str]]:
+    """For each primitive of a rule file, those that it precedes."""
+    found: dict[str, list[str]] = {name: [] for name in introduced(path)}
+    for name, other in _pairs(read_rules(path, folders=(path.parent,)).statements, "precedes"):
+        found.setdefault(name, []).append(other)
+    return found
+
+
+def _read(rule: Statement) -> set[str]:
+    """The primitives that a rule depends on."""
+    atoms = [head for head in rule.heads if head.signature in ORDERING]
+    atoms += [atom for each in rule.body for atom in each.atoms if atom.signature == FITS]
+    return {split_arguments(each.text)[1].strip('"') for each in atoms}
+
+
+_EXAMPLE = re.compile(r"%\*\s*(Example|Counter-example):\s*(.*?)\n(.*?)\*%", re.DOTALL)
+_FACT = re.compile(r"([a-z]\w*(?:\([^()]*\))?)\.(?=\s|$)")
+
+
+@dataclass(frozen=True)
+class Example:
+    """Facts, and the names of each link's segments that must be inferred from them."""
+
+    story: str
+    positive: bool
+    """Whether the file's primitive must occur in it; in a counter-example it must not."""
+
+    facts: tuple[Fact, ...]
+    names: tuple[tuple[str, tuple[str, ...]], ...]
+    """End-effector and names, in order."""
+
+    line: int
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """An example with the names that were inferred."""
+
+    example: Example
+    found: tuple[tuple[str, tuple[str, ...]], ...]
+
+    @property
+    def met(self) -> bool:
+        """Whether the names are those expected."""
+        return dict(self.found) | dict(self.example.names) == dict(self.found)
+
+
+def read_examples(text: str, *, file: Path | str = "") -> tuple[Example, ...]:
+    """The examples of a rule file.
+
+    Raises:
+        RuleError: One has no facts, no expectation, or something that is no fact.
+    """
+    return tuple(_examples(text, str(file)))
+
+
+def _examples(text: str, file: str) -> Iterator[Example]:
+    for found in _EXAMPLE.finditer(text):
+        line = text.count("\n", 0, found.start()) + 1
+        story, body = found[2].strip(), found[3]
+        rows = [each.strip() for each in body.splitlines()]
+        expected = [each[2:].strip() for each in rows if each.startswith("=>")]
+        stated = "\n".join("" if each.startswith("=>") else each for each in rows)
+        facts = tuple(_facts(stated, f"in the example {story!r}: ", file, line + 1))
+        if not facts or not expected:
+            raise RuleError(
+                f"{file}:{line}: the example {story!r} needs facts and a line such as "
+                "=> right_hand: Reach, Lift"
+            )
+        names = tuple(_expectation(each, file, line) for each in expected)
+        yield Example(story, found[1] == "Example", facts, names, line)
+
+
+def _facts(stated: str, where: str, file: str, first: int) -> Iterator[Fact]:
+    """Every fact of an example; nothing else may stand between them."""
+    at = 0
+    while rest := stated[at:].lstrip():
+        at = len(stated) - len(rest)
+        place = f"{file}:{first + stated.count(chr(10), 0, at)}: {where}"
+        found = _FACT.match(stated, at)
+        if found is None:
+            told = rest.splitlines()[0].rstrip()
+            raise RuleError(
+                f"{place}{told!r} is no fact; a fact reads moving(cup, 0, 200). and "
+                "ends with a full stop"
+            )
+        try:
+            yield read_fact(found[1])
+        except CaparError as error:
+            raise RuleError(f"{place}{error}") from None
+        at = found.end()
+
+
+def _expectation(text: str, file: str, line: int) -> tuple[str, tuple[str, ...]]:
+    ee, colon, names = text.partition(":")
+    if not colon:
+        raise RuleError(f"{file}:{line}: expected END_EFFECTOR: Name, Name; found {text!r}")
+    return ee.strip(), tuple(each.strip() for each in names.split(",") if each.strip())
+
+
+def try_examples(examples: Sequence[Example], *, profile: Profile) -> tuple[Outcome, ...]:
+    """The names that the rules infer for each example.
+
+    Raises:
+        RuleError: The rules have an error.
+    """
+    outcomes = []
+    for each in examples:
+        links = infer(each.facts, profile=profile).links
+        found = tuple((link.ee, tuple(one.name for one in link.segments)) for link in links)
+        outcomes.append(Outcome(each, found))
+    return tuple(outcomes)
+
+
+def lacking(examples: Sequence[Example], name: str) -> tuple[str, ...]:
+    """Which examples of a primitive are missing: one that it matches, one that it does not."""
+    shown = {
+        each.positive
+        for each in examples
+        if each.positive == any(name in names for _, names in each.names)
+    }
+    missing = []
+    if True not in shown:
+        missing.append(f"an Example in which {name} occurs")
+    if False not in shown:
+        missing.append(f"a Counter-example in which {name} does not occur")
+    return tuple(missing)
+
+
+def written(example: Example) -> str:
+    """The example as a comment of a rule file."""
+    kind = "Example" if example.positive else "Counter-example"
+    lines = [f"%* {kind}: {example.story}"]
+    lines += [f"   {each}." for each in example.facts]
+    lines += [f"   => {ee}: {', '.join(names)}" for ee, names in example.names]
+    return "\n".join(lines) + "\n*%\n"
+
 
 TELLING = (Frames, RateMhz, Link, Tag, ZeroCrossing, Touching, Gap, Moving, ForceTransfer)
 """The facts that an example contains: contacts and motions, without places and courses."""

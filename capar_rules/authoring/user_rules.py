@@ -2,8 +2,12 @@
 
 import os
 import re
-from collections.abc import Iterable
+import signal
+import threading
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 
 from capar.model.errors import FileError, RuleError
 from capar.model.par import ACTION_NAME, FeatureSet
@@ -155,3 +159,42 @@ def make_folder(folder: Path) -> Path:
 def _path(folder: Path, name: str) -> Path:
     stem = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
     return folder / f"{stem}.lp"
+
+
+HELD = (signal.SIGINT, signal.SIGTERM)
+"""Signals that ask a process to end, which are delayed during a transaction."""
+
+
+@contextmanager
+def unbroken() -> Iterator[None]:
+    """Delay signals that would interrupt this block until its end."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread receives signals and may set handlers
+        return
+    asked: list[int] = []
+
+    def wait(number: int, frame: FrameType | None) -> None:
+        asked.append(number)
+
+    before = {each: signal.signal(each, wait) for each in HELD}
+    try:
+        yield
+    finally:
+        for each, handler in before.items():
+            signal.signal(each, handler)
+    for number in dict.fromkeys(asked):
+        signal.raise_signal(number)
+
+
+def take_away(path: Path) -> Path:
+    """Rename a rule file so that it is no longer loaded, until its removal is certain.
+
+    Returns:
+        Its new path.
+    """
+    return path.replace(path.with_suffix(".removed"))
+
+
+def put_back(aside: Path, path: Path) -> None:
+    """Undo the renaming."""
+    aside.replace(path)

@@ -11,15 +11,138 @@ import os
 import resource
 import sys
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import asdict, dataclass
+from functools import cache
 from math import ceil
 from pathlib import Path
+from typing import Any
 
 from capar.model.errors import CaparError
-from capar_rules.engine.syntax import Place
-from capar_rules.lint.file_checks import Message, Request, base_of, findings_of
-from capar_rules.lint.findings import Finding
+from capar_rules.engine.profiles import profile as shipped
+from capar_rules.engine.syntax import Place, Statement, parse
+from capar_rules.lint.findings import Finding, errors, safety_findings, unsafe_findings
+from capar_rules.lint.text_checks import (
+    Known,
+    Reading,
+    cycle_findings,
+    growth_findings,
+    known,
+    read_rules,
+    static_findings,
+)
+from capar_rules.lint.word_checks import fitting_findings, single_findings, slip_findings
+from capar_rules.lint.world_checks import world_findings
+
+Message = Finding | Path
+"""What a check yields: a finding, or the file that it turns to next."""
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """Rule files to check together."""
+
+    files: tuple[str, ...]
+    """Paths of the files to check; files that they include are checked with them."""
+
+    profile: str
+    """Name of the rule base that they join."""
+
+    beside: tuple[str, ...] = ()
+    """Paths of other rule files of the user that are loaded too; only their syntax is checked."""
+
+    by_text_alone: bool = True
+    """Whether to leave out the checks that ask the solver, which take seconds."""
+
+    def as_json(self) -> dict[str, Any]:
+        """The request as plain values."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, content: dict[str, Any]) -> "Request":
+        """The request of plain values."""
+        lists = {key: tuple(content[key]) for key in ("files", "beside")}
+        return cls(**{**content, **lists})
+
+
+@cache
+def base_of(profile: str) -> Known:
+    """The vocabulary of the rule base of a profile."""
+    return known(parse(shipped(profile).files))
+
+
+def findings_of(request: Request) -> Iterator[Message]:
+    """Check rule files; each stage runs only if the stages before found no error."""
+    base = base_of(request.profile)
+    beside = {Path(each).resolve() for each in request.beside}
+    readings = []
+    for message in read_all(map(Path, (*request.files, *request.beside))):
+        if isinstance(message, Path):
+            yield message
+        else:
+            readings.append(message)
+            yield from message.findings
+    if any(errors(reading.findings) for reading in readings):
+        return
+    sound = True
+    for reading in readings:
+        if Path(reading.file).resolve() not in beside:
+            yield Path(reading.file)
+            others = [other for other in readings if other is not reading]
+            found = tuple(text_findings(reading, with_files(base, others)))
+            sound = sound and not errors(found)
+            yield from found
+    if sound and not request.by_text_alone:
+        yield Path(readings[0].file)
+        yield from _solver_findings(readings[0], base, readings[1:])
+
+
+def read_all(paths: Iterable[Path]) -> Iterator[Reading | Path]:
+    """Read rule files and all that they include, each once; before each, its path."""
+    waiting = list(paths)
+    folders = sorted({path.parent for path in waiting})
+    seen: set[Path] = set()
+    for path in waiting:
+        if path.resolve() not in seen:
+            seen.add(path.resolve())
+            yield path
+            reading = read_rules(path, folders=folders)
+            waiting += reading.included
+            yield reading
+
+
+def with_files(base: Known, readings: Sequence[Reading]) -> Known:
+    """The vocabulary of a rule base together with that of other files."""
+    added: list[Statement] = [rule for reading in readings for rule in reading.statements]
+    return known([*base.rules, *added]) if added else base
+
+
+def text_findings(reading: Reading, base: Known) -> Iterator[Finding]:
+    """What is wrong with one file by its text alone; a stage with errors is the last."""
+    own = reading.statements
+    stages = (
+        (*static_findings(own, base, file=reading.file), *slip_findings(own, base)),
+        unsafe_findings(reading.text, reading.file),
+        growth_findings(own),
+        cycle_findings(own, base.rules),
+        (*fitting_findings(own, base), *single_findings(own)),
+    )
+    for stage in stages:
+        found = tuple(stage)
+        yield from found
+        if errors(found):
+            return
+
+
+def _solver_findings(reading: Reading, base: Known, others: Sequence[Reading]) -> Iterator[Finding]:
+    """What only the solver can say of a file whose text has no error."""
+    found = tuple(safety_findings(reading.text, reading.file))
+    yield from found
+    if not errors(found):
+        beside = [rule for each in others for rule in each.statements]
+        yield from world_findings(reading.statements, base, beside)
+
 
 CPU_S = 30
 """Limit of processor time of one request [s]: a sound file needs 2 to 4 s, at most 10 s."""

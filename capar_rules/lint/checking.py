@@ -1,17 +1,116 @@
 """Check rule files in a separate process, which a hostile file can neither harm nor escape."""
 
+import atexit
 import json
+import os
 import signal
+import subprocess
+import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryFile
+from threading import Lock, Timer
+from typing import IO
 
 from capar.model.errors import RuleError
-from capar_rules.engine.profiles import DEFAULT
+from capar_rules.engine.profiles import DEFAULT, Profile
+from capar_rules.engine.profiles import profile as unchecked_profile
+from capar_rules.engine.solver import rule_file
 from capar_rules.engine.syntax import Place
-from capar_rules.lint.checker_client import WALL_S, ask
-from capar_rules.lint.checker_process import CPU_S, MEMORY_BYTES, OUT_OF_MEMORY
-from capar_rules.lint.file_checks import Request
+from capar_rules.lint.checker_process import CPU_S, MEMORY_BYTES, OUT_OF_MEMORY, Request
 from capar_rules.lint.findings import Finding, errors
+
+WALL_S = 300.0
+"""Limit of elapsed time for each request [s]: ten times that of computing, for a busy machine."""
+
+_START = (
+    "import runpy, sys; sys.path.insert(0, sys.argv[1]); "
+    "runpy.run_module('capar_rules.lint.checker_process', run_name='__main__')"
+)
+"""Runs the checker of this very copy of the package; ``-I -m`` would ignore PYTHONPATH."""
+
+END = "null"
+"""The line that ends the answer to a request."""
+
+_LOCK = Lock()
+
+
+@dataclass(frozen=True)
+class _Checker:
+    """A checker process that waits for requests, and where it writes its remarks."""
+
+    process: "subprocess.Popen[str]"
+    remarks: IO[str]
+
+    def answer(self, request: str) -> tuple[list[str], int | None]:
+        """The lines of an answer, and the exit code if the process ended instead of answering."""
+        assert self.process.stdin is not None
+        assert self.process.stdout is not None
+        late = Timer(WALL_S, self.process.kill)
+        late.start()
+        lines: list[str] = []
+        try:
+            self.process.stdin.write(request + "\n")
+            self.process.stdin.flush()
+            while (line := self.process.stdout.readline()).endswith("\n"):
+                if line.strip() == END:
+                    return lines, None
+                lines.append(line)
+        except BrokenPipeError:
+            pass  # it ended before it had read the request
+        except BaseException:
+            self.end()  # what it still writes would be taken for the next answer
+            raise
+        finally:
+            late.cancel()
+        return lines, self.process.wait()
+
+    def end(self) -> None:
+        """End the process, whatever it does."""
+        self.process.kill()
+        self.process.communicate()
+
+
+def ask(request: str) -> tuple[list[str], int | None, str]:
+    """What the checker process writes on a request.
+
+    Args:
+        request: A request as JSON, in one line.
+
+    Returns:
+        The lines of the answer; the process's exit code (negative: the signal that ended it) if it
+        ended before the answer was complete, else None; and what it remarked.
+    """
+    with _LOCK:
+        checker = _running(_START, os.getpid())
+        if checker.process.poll() is not None:
+            _running.cache_clear()
+            checker = _running(_START, os.getpid())
+        lines, ended = checker.answer(request)
+        if ended is None:
+            return lines, None, ""
+        _running.cache_clear()
+        checker.remarks.seek(0)
+        return lines, ended, checker.remarks.read()
+
+
+@cache
+def _running(start: str, _owner: int) -> _Checker:
+    """A process of this one; a copy of this process that was forked starts its own."""
+    remarks = TemporaryFile("w+")  # noqa: SIM115 - it lasts as long as the process
+    process = subprocess.Popen(
+        [sys.executable, "-I", "-c", start, str(rule_file("").parent)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=remarks,
+        text=True,
+    )
+    checker = _Checker(process, remarks)
+    atexit.register(checker.end)
+    return checker
+
 
 Findings = tuple[Finding, ...]
 """Findings sorted by place, none twice."""
@@ -86,3 +185,74 @@ def _exceeded(file: str, ended: int) -> Finding:
         "count beside it ask too much of the worlds of the audit: check it without them, "
         "--rules EMPTY_FOLDER.",
     )  # fmt: skip
+
+
+HARMLESS = {"no-primitive", "nothing-fits"}
+"""Errors of `rules check` that do not keep a file from being loaded: it may only help others."""
+
+
+def admitted_profile(
+    name: str = DEFAULT, *, added: tuple[Path, ...] = (), steady: bool | None = None
+) -> Profile:
+    """The profile of that name with rule files of users added, each checked by its text first.
+
+    Args:
+        name: Of the profile.
+        added: Rule files of the user.
+        steady: Whether to resolve flicker; None for what is usual in the profile.
+
+    Raises:
+        UnknownNameError: There is none.
+        RuleError: An added file has an error; nothing in it was executed.
+    """
+    chosen = unchecked_profile(name, added=added, steady=steady)
+    if added:
+        admit(added, profile=name)
+    return chosen
+
+
+def admit(files: Sequence[Path], *, profile: str) -> None:
+    """Accept rule files that are to be loaded together, unless their text alone shows an error.
+
+    That is syntax, predicates and names, what could run code or read other files, choices,
+    negative cycles and unbounded growth. It takes well below a second, in one separate process
+    for all files. Checks that ask the solver are left to `capar rules check`.
+
+    Args:
+        files: The rule files.
+        profile: The rule base that they join.
+
+    Raises:
+        RuleError: There is an error; it gives each with file, line, column and remedy.
+    """
+    refuse(faults(files, profile=profile))
+
+
+def refuse(wrong: Sequence[Finding]) -> None:
+    """Say why rule files are not loaded.
+
+    Raises:
+        RuleError: There is an error among them; it gives each with file, line, column and remedy.
+    """
+    if wrong:
+        lines = "\n".join(map(str, wrong))
+        raise RuleError(
+            f"rules that cannot count, so nothing was done:\n{lines}\n"
+            "Mend them, or take them out of their folder; `capar rules check FILE` says more."
+        )
+
+
+def faults(files: Sequence[Path], *, profile: str) -> tuple[Finding, ...]:
+    """The errors that keep rule files from being loaded together, by place."""
+    return faults_of_each([files], profile=profile)[0] if files else ()
+
+
+def faults_of_each(sets: Sequence[Sequence[Path]], *, profile: str) -> list[tuple[Finding, ...]]:
+    """The same for several sets of files, each set by itself, in order."""
+    from capar_rules.lint.checker_process import Request
+
+    requests = [Request(tuple(map(str, files)), profile) for files in sets]
+    return [
+        tuple(finding for finding in errors(found) if finding.code not in HARMLESS)
+        for found in answers(requests)
+    ]

@@ -1,15 +1,27 @@
-"""Checks of a rule file by its statements: which are allowed, and which predicates they use."""
+"""Checks of a rule file by its text: how it is read, which statements it has, and cycles."""
 
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from pathlib import Path
 
-from capar_rules.engine.slicing import heads_of
+from capar.model.errors import RuleError
+from capar.model.facts import LARGEST
+from capar_rules.engine.slicing import heads_of, nodes, nodes_read
 from capar_rules.engine.solver import rule_file
-from capar_rules.engine.syntax import Atom, Place, Signature, Statement, split_arguments
-from capar_rules.lint.findings import NOTE, Finding
+from capar_rules.engine.syntax import (
+    LARGEST_BYTES,
+    Atom,
+    Literal,
+    Place,
+    Signature,
+    Statement,
+    parse_text,
+    split_arguments,
+)
+from capar_rules.lint.findings import NOTE, Finding, solver_findings
 
 AUTHORED: dict[Signature, str] = {
     ("primitive", 1): 'primitive("Lift")',
@@ -301,3 +313,335 @@ def _named(rules: Iterable[Statement], predicate: str) -> Iterator[tuple[str, st
 
 def _listed(signatures: Iterable[Signature]) -> str:
     return ", ".join(f"{name}/{arity}" for name, arity in signatures)
+
+
+DEEPEST = 100
+"""Greatest depth of nested brackets: deeper ones overflow the parser's stack."""
+
+_INCLUDE = re.compile(r"#include\s*(\"([^\"\n]*)\"|<([^>\n]*)>|\S*)[^.\n]*\.?")
+_STRING_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|%\*.*?\*%|%[^\n]*', re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A rule file's statements, or the findings that prevent parsing it."""
+
+    file: str
+    text: str
+    statements: tuple[Statement, ...]
+    findings: tuple[Finding, ...]
+    included: tuple[Path, ...] = ()
+    """Rule files that it includes."""
+
+
+def read_rules(path: Path, *, folders: Iterable[Path] = ()) -> Reading:
+    """Read a rule file; nothing in it is executed.
+
+    Args:
+        path: The file.
+        folders: Folders of rules; what lies in one of them may be included.
+    """
+    text, findings = _text(path)
+    if not findings:
+        findings = list(_tokens(text, path, tuple(folders)))
+    if findings:
+        return Reading(str(path), text, (), tuple(findings))
+    included = []
+    for found in _includes(text):
+        included.append(path.parent / found[2])
+        text = text[: found.start()] + _blank(found) + text[found.end() :]
+    try:
+        statements = parse_text(text)
+    except RuleError as error:
+        return Reading(str(path), text, (), tuple(solver_findings(str(error), str(path))))
+    placed = tuple(_placed(each, str(path)) for each in statements)
+    return Reading(str(path), text, placed, (), tuple(included))
+
+
+def _text(path: Path) -> tuple[str, list[Finding]]:
+    start = Place(str(path), 1, 1)
+    if not path.is_file():
+        return "", [Finding(start, "no-file", "there is no such file.", "Name a rule file, *.lp.")]
+    if path.stat().st_size > LARGEST_BYTES:
+        return "", [
+            Finding(
+                start, "too-large", f"it has more than {LARGEST_BYTES // 1024} kB.",
+                "Split it: one primitive a file.",
+            )
+        ]  # fmt: skip
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        message = f"it cannot be read: {error.strerror}."
+        return "", [
+            Finding(start, "no-file", message, "Grant yourself read permission, or move it.")
+        ]
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        place = Place(str(path), line, error.start - content.rfind(b"\n", 0, error.start))
+        return "", [Finding(place, "encoding", "this is no UTF-8 text.", "Save it as UTF-8.")]
+    return text, []
+
+
+def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Finding]:
+    """What is refused before anything is parsed: it could harm the parser or read other files."""
+    bare = _STRING_OR_COMMENT.sub(_blank, text)
+    if "\0" in text:
+        yield _at(text, text.index("\0"), path, "encoding", "there is a zero byte.", "Remove it.")
+    if text.startswith("\ufeff"):
+        yield _at(text, 0, path, "encoding", "there is a byte-order mark.", "Save it without one.")
+    for found in list(re.finditer(r"(?!\A)[^\x00-\x7f]|\A[^\x00-\x7f\ufeff]", bare))[:1]:
+        yield _at(
+            text, found.start(), path, "syntax", f"{found[0]!r} is not allowed in rules.",
+            "Outside quoted texts and comments, write ASCII letters and digits.",
+        )  # fmt: skip
+    for found in re.finditer(r"\b\d{10,}\b", bare):
+        if int(found[0][:20]) > LARGEST:
+            yield _at(
+                text, found.start(), path, "number", f"{found[0][:20]} is too large for the rules.",
+                f"Stay within {LARGEST}: millimetres, frames and milliseconds do.",
+            )  # fmt: skip
+    for found in re.finditer(r"#program\b", bare):
+        yield _at(
+            text, found.start(), path, "refused-statement", "#program is refused: rules stand in "
+            "one program.", "Remove it.",
+        )  # fmt: skip
+    for found in re.finditer(r"#script\b", bare):
+        yield _at(
+            text, found.start(), path, "script", "#script runs code and is refused.",
+            "Remove it; rules are logic alone.",
+        )  # fmt: skip
+    for found in _includes(text):
+        name = found[2] or found[3] or ""
+        target = (path.parent / name).resolve()
+        inside = any(target.parent == each.resolve() for each in folders) and name.endswith(".lp")
+        if found[2] is None or not inside or not target.is_file():
+            yield _at(
+                text, found.start(), path, "include",
+                f"#include of {name!r} reaches outside the rule folders and is refused.",
+                "The rule base is there already; include only rule files beside this one.",
+            )  # fmt: skip
+    depth = deepest = 0
+    for sign in bare:
+        depth += (sign in "([{") - (sign in ")]}")
+        deepest = max(deepest, depth)
+    if deepest > DEEPEST:
+        yield Finding(
+            Place(str(path), 1, 1), "too-deep", f"brackets nest {deepest} deep.",
+            f"Nest them at most {DEEPEST} deep.",
+        )  # fmt: skip
+
+
+def _includes(text: str) -> list[re.Match[str]]:
+    """Every #include outside comments; a % in a quoted text begins no comment."""
+    return list(_INCLUDE.finditer(_STRING_OR_COMMENT.sub(_blank_comment, text)))
+
+
+def _blank_comment(found: re.Match[str]) -> str:
+    return found[0] if found[0].startswith('"') else _blank(found)
+
+
+def _blank(found: re.Match[str]) -> str:
+    return re.sub(r"[^\n]", " ", found[0])
+
+
+def _at(text: str, at: int, path: Path, code: str, message: str, remedy: str) -> Finding:
+    line = text.count("\n", 0, at) + 1
+    return Finding(Place(str(path), line, at - text.rfind("\n", 0, at)), code, message, remedy)
+
+
+def _placed(statement: Statement, file: str) -> Statement:
+    """The statement with its file's name in all its places."""
+
+    def here(place: Place) -> Place:
+        return replace(place, file=file)
+
+    return replace(
+        statement,
+        place=here(statement.place),
+        heads=tuple(replace(each, place=here(each.place)) for each in statement.heads),
+        body=tuple(
+            replace(
+                each,
+                place=here(each.place),
+                atoms=tuple(replace(atom, place=here(atom.place)) for atom in each.atoms),
+            )
+            for each in statement.body
+        ),
+        external=tuple(map(here, statement.external)),
+    )
+
+
+Graph = Mapping[Signature, set[Signature]]
+
+
+def cycle_findings(own: Sequence[Statement], base: Sequence[Statement]) -> Iterator[Finding]:
+    """Each rule of a file through which a predicate depends on its own negation."""
+    everything = [*base, *own]
+    graph = _graph(everything)
+    component = _components(graph)
+    negative = {
+        component[head]
+        for head, below, sign in _edges(everything)
+        if sign and component[head] == component.get(below)
+    }
+    for rule in own:
+        for head, below, _ in _edges([rule]):
+            if component.get(head) == component.get(below) and component.get(head) in negative:
+                path = " -> ".join(name for name, _ in [head, *_path(graph, below, head)])
+                yield Finding(
+                    rule.place, "negative-cycle",
+                    f"{head[0]} depends on its own negation: {path}; there would be several "
+                    "answers, or none.",
+                    "Make it depend on measurements and features, which names do not change.",
+                )  # fmt: skip
+                break
+
+
+def components(rules: Sequence[Statement]) -> dict[Signature, int]:
+    """The number of the strongly connected component of each predicate."""
+    return _components(_graph(rules))
+
+
+def _edges(rules: Iterable[Statement]) -> Iterator[tuple[Signature, Signature, bool]]:
+    """Edges of the dependency graph: head, predicate of the body, whether it is negated."""
+    rules = list(rules)
+    named = {node for rule in rules for head in rule.heads for node in nodes(head)}
+    for rule in rules:
+        for head in rule.heads:
+            for literal in rule.body:
+                for atom in literal.atoms:
+                    closed = literal.kind == "atom" and atom.sign == 0
+                    for node in nodes(head):
+                        for below in nodes_read(atom, named):
+                            yield node, below, not closed
+
+
+def _graph(rules: Iterable[Statement]) -> Graph:
+    graph: dict[Signature, set[Signature]] = defaultdict(set)
+    for head, below, _ in _edges(rules):
+        graph[head].add(below)
+        graph[below] |= set()
+    return graph
+
+
+def _components(graph: Graph) -> dict[Signature, int]:
+    """The strongly connected component of each predicate, by Kosaraju's algorithm."""
+    order: list[Signature] = []
+    seen: set[Signature] = set()
+    for start in sorted(graph):
+        order += _walk(graph, start, seen)
+    backward: dict[Signature, set[Signature]] = defaultdict(set)
+    for head, group in graph.items():
+        for below in group:
+            backward[below].add(head)
+    component: dict[Signature, int] = {}
+    done: set[Signature] = set()
+    for number, start in enumerate(reversed(order)):
+        for member in _walk(backward, start, done):
+            component[member] = number
+    return component
+
+
+def _walk(graph: Graph, start: Signature, seen: set[Signature]) -> list[Signature]:
+    """What a depth-first search newly reaches from a start, in postorder."""
+    if start in seen:
+        return []
+    seen.add(start)
+    left: list[Signature] = []
+    stack = [(start, iter(sorted(graph.get(start, ()))))]
+    while stack:
+        node, rest = stack[-1]
+        nearest = next((each for each in rest if each not in seen), None)
+        if nearest is None:
+            left.append(node)
+            stack.pop()
+        else:
+            seen.add(nearest)
+            stack.append((nearest, iter(sorted(graph.get(nearest, ())))))
+    return left
+
+
+def _path(graph: Graph, start: Signature, goal: Signature) -> list[Signature]:
+    """A shortest path between two predicates."""
+    before: dict[Signature, Signature] = {}
+    waiting = [start]
+    for node in waiting:
+        if node == goal:
+            break
+        for successor in sorted(graph[node]):
+            if successor not in before and successor != start:
+                before[successor] = node
+                waiting.append(successor)
+    path = [goal]
+    while path[-1] != start:
+        path.append(before[path[-1]])
+    return path[::-1]
+
+
+WIDEST = 100_000
+"""Greatest length of a range between two literal numbers."""
+
+_RANGE = re.compile(r"(-?\d+)\.\.(-?\d+)")
+_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*"')
+_VARIABLE = re.compile(r"\b_*[A-Z]\w*")
+_PLAIN = re.compile(r"_*[A-Z]\w*")
+
+
+def growth_findings(own: Sequence[Statement]) -> Iterator[Finding]:
+    """Ranges that are too wide, and recursions that keep making new values."""
+    component = components(own)
+    for rule in own:
+        if rule.kind != "rule":
+            continue
+        for low, high in _RANGE.findall(_TEXT.sub("", rule.text)):
+            if int(high) - int(low) > WIDEST:
+                yield Finding(
+                    rule.place, "unbounded", f"the range {low}..{high} is too wide.",
+                    f"Hold at most {WIDEST} numbers, or take them from a measurement, such as "
+                    "tick(Hand, Tick, Frame).",
+                )  # fmt: skip
+        for name in _growing(rule, component):
+            yield Finding(
+                rule.place, "unbounded", f"this rule keeps making new values of {name} from "
+                "its own.",
+                f"Bind {name} by a measurement that does not depend on this rule, such as "
+                "tick(Hand, Tick, Frame).",
+            )  # fmt: skip
+
+
+def _growing(rule: Statement, component: dict[Signature, int]) -> list[str]:
+    """Variables of the head that the recursion changes and nothing outside it binds."""
+    mine = {component[node] for head in rule.heads for node in nodes(head) if node in component}
+    again = [each for each in rule.body if _positive(each) and _within(each, component, mine)]
+    if not again:
+        return []
+    bound = {
+        name
+        for each in rule.body
+        if _positive(each) and each not in again
+        for name in _VARIABLE.findall(_TEXT.sub("", each.text))
+    }
+    passed = {
+        argument
+        for each in again
+        for argument in split_arguments(each.text)
+        if _PLAIN.fullmatch(argument)
+    }
+    growing: list[str] = []
+    for head in rule.heads:
+        for argument in split_arguments(head.text):
+            kept = bound | (passed if _PLAIN.fullmatch(argument) else set())
+            names = _VARIABLE.findall(_TEXT.sub("", argument))
+            growing += [name for name in names if name not in kept]
+    return list(dict.fromkeys(growing))
+
+
+def _positive(literal: Literal) -> bool:
+    return literal.kind == "atom" and literal.sign == 0
+
+
+def _within(literal: Literal, component: dict[Signature, int], mine: set[int]) -> bool:
+    return any(component.get(node) in mine for atom in literal.atoms for node in nodes(atom))

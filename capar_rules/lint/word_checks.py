@@ -7,18 +7,91 @@ from difflib import get_close_matches
 
 from capar.model.par import ACTION_NAME
 from capar_rules.engine.slicing import FITS
-from capar_rules.engine.syntax import Atom, Statement, split_arguments
+from capar_rules.engine.syntax import Atom, Literal, Signature, Statement, split_arguments
 from capar_rules.lint.findings import ERROR, NOTE, Finding
 from capar_rules.lint.text_checks import AUTHORED, Known, introduced_names
-from capar_rules.lint.word_places import (
-    CONSTANT,
-    KINDS,
-    STRING,
-    VARIABLE,
-    Slot,
-    arguments_of,
-    closed,
-)
+
+Slot = tuple[Signature, int]
+"""A predicate and the index of an argument, from zero."""
+
+KINDS = frozenset({"hand", "foot", "head"})
+"""The usual kinds of end-effectors (thesis 4.4.1); a capture may have others."""
+
+MEASURED: Mapping[Slot, frozenset[str]] = {
+    (("tag", 2), 1): frozenset({"self", "fixed", "mobile"}),
+    (("link", 3), 1): KINDS,
+    (("link", 3), 2): frozenset({"right", "left", "none"}),
+}
+"""Words in arguments of measurements (inputs.lp), which no rule defines."""
+
+VARIABLE = re.compile(r"_*[A-Z]\w*'*")
+CONSTANT = re.compile(r"_*[a-z]\w*'*")
+STRING = re.compile(r'"[^"]*"')
+_TERM = re.compile(r"(_*[a-z]\w*)\(")
+
+
+def closed(rules: Sequence[Statement]) -> dict[Slot, frozenset[str]]:
+    """The arguments for which rules have only a finite set of words, each with those words.
+
+    A compound such as ``seg(Hand, From)`` is listed as ``seg(``. Arguments that can be a number,
+    any term or a measured value have no entry.
+    """
+    constants = {each.defines for each in rules if isinstance(each.defines, str)}
+    told = [_row(head, each) for each in rules for head in each.heads]
+    found: dict[Slot, frozenset[str] | None] = {
+        (signature, place): frozenset()
+        for signature, arguments, _ in told
+        for place in range(len(arguments))
+    }
+    found |= MEASURED
+    changed = True
+    while changed:
+        changed = False
+        for signature, arguments, bound in told:
+            for place, text in enumerate(arguments):
+                slot = signature, place
+                old = found[slot]
+                if old is None or slot in MEASURED:
+                    continue
+                new = _words(text, bound, found, constants)
+                wider = None if new is None else old | new
+                if wider != old:
+                    found[slot], changed = wider, True
+    return {slot: words for slot, words in found.items() if words}
+
+
+def _row(head: Atom, rule: Statement) -> tuple[Signature, list[str], dict[str, list[Slot]]]:
+    """A head's arguments, and where each of the rule's variables is bound."""
+    bound: dict[str, list[Slot]] = {}
+    for literal in rule.body:
+        if literal.kind == "atom" and not literal.sign:
+            for atom in literal.atoms:
+                for place, text in enumerate(arguments_of(atom)):
+                    if VARIABLE.fullmatch(text):
+                        bound.setdefault(text, []).append((atom.signature, place))
+    return head.signature, arguments_of(head), bound
+
+
+def arguments_of(atom: Atom) -> list[str]:
+    """An atom's arguments as they are written; empty texts for a pool of atoms."""
+    found = split_arguments(atom.text) if atom.signature[1] else []
+    return found if len(found) == atom.signature[1] else [""] * atom.signature[1]
+
+
+def _words(
+    text: str,
+    bound: Mapping[str, Iterable[Slot]],
+    found: Mapping[Slot, frozenset[str] | None],
+    constants: set[str],
+) -> frozenset[str] | None:
+    """The words that an argument of a head can be; None for anything."""
+    if STRING.fullmatch(text) or (CONSTANT.fullmatch(text) and text not in constants):
+        return frozenset({text})
+    if (term := _TERM.match(text)) and text.endswith(")"):
+        return frozenset({f"{term[1]}("})
+    choices = [words for slot in bound.get(text, ()) if (words := found.get(slot)) is not None]
+    return frozenset.intersection(*choices) if choices else None
+
 
 MOST = 12
 """How many words a finding lists where none is similar."""
@@ -194,3 +267,75 @@ def _nearest(name: str, known: Iterable[str]) -> str:
     more = f" and {len(words) - MOST} more" if len(words) > MOST else ""
     there = f"There are {', '.join(words[:MOST])}{more}."
     return f"Did you mean {close[0]}?" if close else there
+
+
+COMPOUND = frozenset({"seg("})
+"""What stands where a predicate takes a segment: ``seg(Hand, From)``."""
+
+FITTED: Slot = (FITS, 0)
+
+
+def segment_slots(rules: Iterable[Statement]) -> frozenset[Slot]:
+    """The arguments of predicates that are segments."""
+    return frozenset(slot for slot, words in closed([*rules]).items() if words == COMPOUND)
+
+
+def about_others(rule: Statement, slots: Iterable[Slot]) -> frozenset[str]:
+    """The conditions, as written, about a segment that is not the one of the rule's head.
+
+    A head without a segment has the first one of the body.
+    """
+    wanted, alike = frozenset(slots), _alike(rule)
+    home = {alike(term) for head in rule.heads for term in _terms(head, wanted)}
+    found = set()
+    for literal in rule.body:
+        terms = {alike(term) for atom in literal.atoms for term in _terms(atom, wanted)}
+        home = home or terms
+        if terms - home:
+            found.add(literal.text)
+    return frozenset(found)
+
+
+def _terms(atom: Atom, slots: frozenset[Slot]) -> list[str]:
+    places = enumerate(arguments_of(atom))
+    return [_spaceless(text) for at, text in places if (atom.signature, at) in slots]
+
+
+class _Alike:
+    """Terms that a rule equates, by one of them."""
+
+    def __init__(self) -> None:
+        self.leaders: dict[str, str] = {}
+
+    def join(self, left: str, right: str) -> None:
+        self.leaders[self(left)] = self(right)
+
+    def __call__(self, term: str) -> str:
+        while (leader := self.leaders.get(term, term)) != term:
+            term = leader
+        return term
+
+
+def _alike(rule: Statement) -> _Alike:
+    found = _Alike()
+    for left, right in equations(rule):
+        found.join(_spaceless(left), _spaceless(right))
+    return found
+
+
+def equations(rule: Statement) -> Iterable[tuple[str, str]]:
+    """The two sides of each equation of a rule."""
+    for literal in rule.body:
+        if sides := _sides(literal):
+            yield sides
+
+
+def _sides(literal: Literal) -> tuple[str, str] | None:
+    sides = literal.text.split(" = ")
+    if literal.kind == "comparison" and len(sides) == 2 and not literal.sign:
+        return sides[0], sides[1]
+    return None
+
+
+def _spaceless(text: str) -> str:
+    return "".join(text.split())

@@ -12,7 +12,7 @@ from capar_rules.authoring.user_rules import (
     rules_folder,
     user_rules,
 )
-from capar_rules.lint.admission import admit, admitted_profile, faults, faults_of_each, refuse
+from capar_rules.lint.checking import admit, admitted_profile, faults, faults_of_each, refuse
 from capar_rules.lint.findings import Finding
 
 BY_TEXT = {

@@ -7,7 +7,7 @@ import pytest
 
 from capar_rules.engine.profiles import profile
 from capar_rules.lint.audit import Audit
-from capar_rules.lint.profile_audit import audit
+from capar_rules.lint.world_checks import audit
 
 pytestmark = pytest.mark.long
 

@@ -7,24 +7,25 @@ import pytest
 
 from capar.model.errors import FileError, RuleError, UnknownNameError
 from capar.model.par import FeatureSet
-from capar_rules.authoring.catalogue import preceded
-from capar_rules.authoring.examples import Example, read_examples, written
 from capar_rules.authoring.user_primitives import (
+    Example,
     add_rule,
     introduced,
     new_rule,
+    preceded,
+    read_examples,
     removable,
     rule_of,
     rules_of,
     telling,
     try_rule,
     user_rules,
+    written,
 )
 from capar_rules.engine.profiles import profile
-from capar_rules.lint.admission import admitted_profile
-from capar_rules.lint.checking import check
+from capar_rules.lint.checking import admitted_profile, check
 from capar_rules.lint.findings import errors
-from capar_rules.lint.profile_audit import audit
+from capar_rules.lint.world_checks import audit
 from capar_rules.pars.inference import infer
 from extractors.measure import measure
 

@@ -6,9 +6,9 @@ import hostile_rules
 import pytest
 
 from capar.model.errors import RuleError
-from capar_rules.lint import checker_client, checking
+from capar_rules.lint import checking
+from capar_rules.lint.checker_process import Request
 from capar_rules.lint.checking import answers
-from capar_rules.lint.file_checks import Request
 
 LIMITED = """
 import sys
@@ -44,7 +44,7 @@ def requests(folder: Path, *texts: str) -> list[Request]:
 def test_a_file_that_exceeds_a_limit_is_refused_with_the_limit(
     judge, reason, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(checker_client, "_START", LIMITED.format(judge=judge))
+    monkeypatch.setattr(checking, "_START", LIMITED.format(judge=judge))
     asked = requests(tmp_path, "p(1).\n")
     ((found,),) = answers(asked)
     assert (found.code, found.place.file) == ("unbounded", asked[0].files[0])
@@ -52,8 +52,8 @@ def test_a_file_that_exceeds_a_limit_is_refused_with_the_limit(
 
 
 def test_a_check_that_takes_too_long_is_ended_from_outside(tmp_path, monkeypatch):
-    monkeypatch.setattr(checker_client, "_START", "import time; time.sleep(60)")
-    monkeypatch.setattr(checker_client, "WALL_S", 0.2)
+    monkeypatch.setattr(checking, "_START", "import time; time.sleep(60)")
+    monkeypatch.setattr(checking, "WALL_S", 0.2)
     ((found,),) = answers(requests(tmp_path, "p(1).\n"))
     assert found.code == "unbounded"
     assert "takes longer than" in found.message
@@ -70,7 +70,7 @@ def test_files_after_one_that_breaks_the_parser_are_checked_all_the_same(tmp_pat
 
 
 def test_a_checker_that_fails_by_itself_blames_no_file(tmp_path, monkeypatch):
-    monkeypatch.setattr(checker_client, "_START", "raise SystemExit('out of order')")
+    monkeypatch.setattr(checking, "_START", "raise SystemExit('out of order')")
     with pytest.raises(RuleError, match="the checker process failed: out of order"):
         answers(requests(tmp_path, "p(1).\n"))
 

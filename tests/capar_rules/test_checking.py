@@ -10,8 +10,8 @@ import pytest
 from capar_rules.authoring.glossary import glossary
 from capar_rules.engine.profiles import profile
 from capar_rules.engine.syntax import parse_text
+from capar_rules.lint.checker_process import base_of
 from capar_rules.lint.checking import check, check_all
-from capar_rules.lint.file_checks import base_of
 from capar_rules.lint.findings import NOTE, Finding, errors
 from capar_rules.lint.world_checks import world_findings
 

@@ -8,10 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from capar.rulebook.drafts import rule_from_segment
-from capar_rules.authoring.examples import read_examples
-from capar_rules.authoring.excerpts import MOST_FACTS
-from capar_rules.authoring.telling_bits import conditions, distinction
-from capar_rules.authoring.user_primitives import try_rule
+from capar_rules.authoring.drafting import MOST_FACTS, conditions, distinction
+from capar_rules.authoring.user_primitives import read_examples, try_rule
 from capar_rules.engine.profiles import profile
 
 DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"

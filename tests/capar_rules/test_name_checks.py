@@ -7,11 +7,10 @@ import pytest
 
 from capar_rules.engine.profiles import profile
 from capar_rules.engine.syntax import parse
-from capar_rules.lint.audit import evaluate
+from capar_rules.lint.audit import NAMED, PROFILES, evaluate, every_world, extents_of, fingerprint
 from capar_rules.lint.checking import check
-from capar_rules.lint.extents import NAMED, PROFILES, every_world, extents_of, fingerprint
 from capar_rules.lint.findings import Finding, errors
-from capar_rules.lint.profile_audit import audit
+from capar_rules.lint.world_checks import audit
 
 FITS = ("fits", 2)
 
@@ -159,7 +158,7 @@ def test_where_shipped_primitives_can_fit_is_stored_for_the_rules_as_they_are(na
     stored = extents_of(rules)
     assert stored.fits, (
         f"the rules of {name} have changed ({fingerprint(rules)[:8]}): "
-        "run python -m capar_rules.lint.extents"
+        "run python -m capar_rules.lint.audit"
     )
     limbs = frozenset(sorted(every_world())[::61])
     atoms = evaluate(rules, (FITS, NAMED), limbs=limbs)

@@ -7,7 +7,7 @@ import pytest
 
 from capar.model.facts import Fact
 from capar.pipelines.observation import observe
-from capar_rules.authoring.required_facts import NUMBERED
+from capar_rules.authoring.glossary import NUMBERED
 from capar_rules.borders.border_numbers import number_borders
 
 DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"

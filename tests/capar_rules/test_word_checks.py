@@ -4,11 +4,10 @@ from pathlib import Path
 
 import pytest
 
+from capar_rules.lint.checker_process import Request, base_of
 from capar_rules.lint.checking import answers, check
-from capar_rules.lint.file_checks import Request, base_of
 from capar_rules.lint.findings import ERROR, NOTE, Finding, errors
-from capar_rules.lint.word_checks import slip_findings
-from capar_rules.lint.word_places import closed
+from capar_rules.lint.word_checks import closed, slip_findings
 
 HEAD = '%* Nip: a slip. *%\nprimitive("Nip").\nspecialises("Nip", "Touch").\n'
 

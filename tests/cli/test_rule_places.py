@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from capar.cli import app
 from capar.model.errors import CaparError, FileError, RuleError
-from capar_rules.lint.admission import faults
+from capar_rules.lint.checking import faults
 from kb.actionary import Actionary
 
 DEMO = str(Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug")

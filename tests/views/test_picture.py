@@ -12,9 +12,7 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 from capar.model.errors import FileError
 from capar.model.observation import JointAction, Observation
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
-from capar.views.painter import COLOURS, LOST, OTHERS, Painter
-from capar.views.picture import LOST_NOTE, draw
-from capar.views.rows import Speeds, rows
+from capar.views.picture import COLOURS, LOST, LOST_NOTE, OTHERS, Painter, Speeds, draw, rows
 
 HEADS = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 

@@ -7,8 +7,13 @@ from motions import TALL_MAN, drink_from_mug
 
 from capar.model.notices import Notice, notice
 from capar.pipelines.observation import observe
-from capar.views.notices import named_in, reservation_lines, reservations_on_told
-from capar.views.plain_notices import BY_DISTANCE, PLAIN
+from capar.views.notices import (
+    BY_DISTANCE,
+    PLAIN,
+    named_in,
+    reservation_lines,
+    reservations_on_told,
+)
 
 
 def rough(*names: str) -> list[Notice]:

@@ -7,7 +7,7 @@ import pytest
 from observations import drink_from_mug, pick_up_with_both_hands
 
 from capar.model.facts import Moving, Touching
-from capar.views.rows import MOST_DETAILED, Kind, frame_clock, rows
+from capar.views.picture import MOST_DETAILED, Kind, frame_clock, rows
 
 
 def test_a_link_shows_segments_crossings_contacts_and_speed_in_that_order() -> None:

@@ -10,8 +10,8 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 from rich.console import Console
 from rich.table import Table
 
-from capar.views.tables import aligned
-from capar.views.text import (
+from capar.views.tables import (
+    aligned,
     joint_lines,
     observation_text,
     par_text,

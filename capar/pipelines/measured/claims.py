@@ -15,7 +15,7 @@ from capar.views.lettering import Span
 from capar.views.measured_picture import MeasuredPicture, draw_measured
 from capar.views.movers import mover_lines, mover_stretches
 from capar.views.panels import Held, Panel, Row
-from capar.views.rows import kind_of
+from capar.views.picture import kind_of
 from capar_rules.explain.claims import Quantity
 from capar_rules.explain.explanation import Explanation
 

@@ -13,8 +13,7 @@ from trimesh.exchange.gltf import export_glb
 
 from capar.model.facts import LookingAt, Touching
 from capar.model.observation import Observation
-from capar.views.painter import COLOURS, CONTACT, MOTION, OTHERS, PALE
-from capar.views.rows import Kind, Row, frame_clock, rows
+from capar.views.picture import COLOURS, CONTACT, MOTION, OTHERS, PALE, Kind, Row, frame_clock, rows
 from capar.views.viewer.stage import Stage
 
 
