@@ -16,8 +16,7 @@ import fcl
 import numpy as np
 import scene
 
-from extractors.bodies.bodies import bodies_of
-from extractors.bodies.body_geometry import BodyGeometry
+from extractors.bodies.bodies import BodyGeometry, bodies_of
 from extractors.contact.contacts import watched
 from extractors.contact.proximity import Body, near
 from extractors.contact.touch_distances import touchable

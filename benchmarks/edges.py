@@ -27,7 +27,7 @@ from capar.model.capture import Stream, TagObject, TagType
 from extractors.bodies.poses import poses_of
 from extractors.motion.motion_edges import motion_edges
 from extractors.motion.object_motion import motion_floor, moving, rest_poses
-from extractors.signals.clock import frame_rate
+from extractors.signals.intervals import frame_rate
 from extractors.thresholds import Thresholds
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))

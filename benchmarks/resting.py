@@ -18,8 +18,7 @@ from time import perf_counter
 import clingo
 
 from capar.model.facts import Fact, Frames, Link, RateMhz, Resting, Tag, Touching, program
-from capar_rules.borders.border_numbers import Tick, number_borders
-from capar_rules.borders.undisturbed_rest import undisturbed
+from capar_rules.borders.border_numbers import Tick, number_borders, undisturbed
 from capar_rules.engine.profiles import profile
 from capar_rules.engine.solver import solve
 

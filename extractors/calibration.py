@@ -1,32 +1,7 @@
-"""Calibration: everything that is decided once for a whole recording.
+"""Calibration: everything that is decided once for a whole recording, and how a user sets it."""
 
-With the calibration of a recording, any part of it is measured as the whole is: facts of a window
-that lie farther from its ends than ``Horizons.margin_s`` are those of the whole. This holds for
-zero crossings and pauses, contacts and their gaps, normals and closing speeds, looks, leaning,
-falls, rolling, and how bodies are arranged. It does not hold for these:
-
-* ``Moving``, ``Displaced``, ``Resting`` and ``Bears``: a place of rest that is left is the median
-  pose of a whole standstill, and holds for as long as the body is within the floor of it; the place
-  that a body comes to is that of its beginning (``rest_begins_s``). A window that is
-  given the poses from longer ago (``Poses.longer``) tells it by them, as live observation does;
-  a rest that goes on after a window has no end yet.
-* ``Reverses``, ``DrawsBack``, ``Swings`` and ``Lengthwise``: all are sought within a motion from
-  its beginning, so they need what ``Moving`` needs.
-* ``Guided``, ``Opening`` and what turns back on a guide: a hinge or rail is fitted to every motion
-  of the recording. It would take the guide as part of the calibration.
-* ``Place``, ``TrunkPlace``, ``Posture``, ``Distance``, ``Travelled`` and ``SweptAzimuth``: their
-  frames are those of the facts above; and ways and angles are summed up from the first frame:
-  they agree where a window is given the sums before it (``extractors.relations.running_sums``).
-  A window has every ``SweptAzimuth``, the whole only those of pairs that go about each other.
-* Which mobile objects are measured at all: those that an end-effector touches in the window.
-* ``Lies`` of a shifted grip: it compares all pauses of one contact, however long.
-* Contacts across a loss or a stay within the release distance that is longer than the margin: the
-  contact before and after is taken to last.
-* Clocks with uneven steps, which are filtered on an even clock that begins with each stretch.
-"""
-
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -35,19 +10,19 @@ from capar.model.calibration import (
     BodyCalibration,
     Calibration,
     FootLevel,
+    Found,
     Horizons,
+    PairCalibration,
 )
 from capar.model.capture import Capture, Sensor, TagObject, TagType
-from capar.model.errors import CaptureError
-from extractors.bodies.bodies import Bodies, bodies_of
-from extractors.bodies.body_geometry import BodyGeometry
-from extractors.contact.contacts import contact_tolerance, pair_distances
-from extractors.contact.footing import FOOT, moving_grounds
-from extractors.motion.leaning import upright_axis
+from capar.model.errors import CaparError, CaptureError, UnknownNameError
+from extractors.bodies.bodies import Bodies, BodyGeometry, bodies_of
+from extractors.contact.contacts import FOOT, contact_tolerance, moving_grounds, pair_distances
 from extractors.motion.object_motion import motion_floor, rest_poses
-from extractors.relations.weight_bearing import foot_level
-from extractors.signals.clock import frame_rate, time_step
+from extractors.motion.phases import upright_axis
+from extractors.relations.support import foot_level
 from extractors.signals.filters import cutoff, filter_support_s, speed
+from extractors.signals.intervals import frame_rate, time_step
 from extractors.thresholds import Thresholds
 
 STEP_SHARE = 1e-3
@@ -177,3 +152,108 @@ def _horizons(step_s: float, thresholds: Thresholds) -> Horizons:
             thresholds.fall_minimum_s,
         ),
     )
+
+
+FORM = "--set takes KEY=VALUE, such as touch_m:right_hand,bowl=0.12"
+
+
+def set_values(calibration: Calibration, settings: Iterable[str]) -> Calibration:
+    """The same with some values replaced.
+
+    Args:
+        calibration: What was decided for a recording.
+        settings: ``KEY=VALUE`` each, in metres, seconds and radians. Keys are those of ``KEYS``;
+            ``touch_m:FIRST,SECOND`` is a distance of surfaces where both have one, else of origins.
+
+    Raises:
+        CaparError: It is not of that form, or the value is no number above zero.
+        UnknownNameError: There is no such key, body or pair.
+    """
+    for setting in settings:
+        key, given, text = setting.partition("=")
+        name, _, of = key.strip().partition(":")
+        if not given:
+            raise CaparError(f"{setting!r} has no value; {FORM}")
+        if name not in KEYS:
+            raise UnknownNameError("calibration value", name, KEYS, where=f"--set {setting}")
+        if of and name in WHOLE:
+            raise CaparError(f"--set {setting}: {name} is of the whole capture, not of {of!r}")
+        calibration = KEYS[name](calibration, of.strip(), _number(setting, text))
+    return calibration
+
+
+def _number(setting: str, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise CaparError(f"--set {setting}: {text!r} is no number; {FORM}") from None
+    if not 0.0 < value < float("inf"):
+        raise CaparError(f"--set {setting}: expected a number above zero, found {text}")
+    return value
+
+
+def _tolerance(known: Calibration, of: str, value: float) -> Calibration:
+    def wider(pair: PairCalibration) -> PairCalibration:
+        if pair.found is not Found.TOLERANCE:
+            return pair
+        margin = min(pair.release_m - pair.touch_m, value)
+        return replace(pair, touch_m=value, release_m=value + margin)
+
+    pairs = tuple(map(wider, known.pairs))
+    return replace(known, contact_tolerance_m=value, pairs=pairs)
+
+
+def _touch(known: Calibration, of: str, value: float) -> Calibration:
+    """A distance for a pair, in either order."""
+    names = {name.strip() for name in of.split(",")}
+    if not any({pair.first, pair.second} == names for pair in known.pairs):
+        pairs = [f"{pair.first},{pair.second}" for pair in known.pairs]
+        raise UnknownNameError("pair", of, pairs, where="--set touch_m")
+
+    def stated(pair: PairCalibration) -> PairCalibration:
+        if {pair.first, pair.second} != names:
+            return pair
+        pivots = pair.pivots or pair.found is Found.NEVER
+        return PairCalibration(
+            pair.first, pair.second, value, value, pivots=pivots, found=Found.STATED
+        )
+
+    return replace(known, pairs=tuple(map(stated, known.pairs)))
+
+
+def _floor(field: str) -> "Callable[[Calibration, str, float], Calibration]":
+    def changed(known: Calibration, of: str, value: float) -> Calibration:
+        bodies = (*known.sensors, *known.objects)
+        if of not in [each.name for each in bodies]:
+            names = [each.name for each in bodies]
+            raise UnknownNameError("body", of, names, where=f"--set {field}")
+
+        def one(each: BodyCalibration) -> BodyCalibration:
+            return replace(each, **_field(field, value)) if each.name == of else each
+
+        sensors, objects = tuple(map(one, known.sensors)), tuple(map(one, known.objects))
+        return replace(known, sensors=sensors, objects=objects)
+
+    return changed
+
+
+def _whole(field: str) -> "Callable[[Calibration, str, float], Calibration]":
+    return lambda known, of, value: replace(known, **_field(field, value))
+
+
+def _field(name: str, value: float) -> dict[str, Any]:
+    return {name: value}
+
+
+KEYS: "dict[str, Callable[[Calibration, str, float], Calibration]]" = {
+    "touch_m": _touch,
+    "contact_tolerance_m": _tolerance,
+    "contact_dropout_s": _whole("contact_dropout_s"),
+    "contact_minimum_s": _whole("contact_minimum_s"),
+    "motion_floor_m": _floor("motion_floor_m"),
+    "motion_floor_rad": _floor("motion_floor_rad"),
+}
+"""What can be set, by key: of the whole, of a ``:BODY``, or of a pair ``:FIRST,SECOND``."""
+
+WHOLE = ("contact_tolerance_m", "contact_dropout_s", "contact_minimum_s")
+"""Keys of the whole capture, which name no body."""

@@ -10,7 +10,7 @@ from hashlib import sha256
 from clingo import ast as rules_ast
 
 from capar.model.errors import RuleError
-from capar_rules.engine.search import understand
+from capar_rules.engine.solver import understand
 
 
 @dataclass(frozen=True, slots=True, order=True)

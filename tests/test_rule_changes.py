@@ -11,8 +11,7 @@ from typer.testing import CliRunner
 from capar.cli import app
 from capar.model.errors import CaparError, FileError
 from capar.model.facts import MovedBy
-from capar.pipelines.observation import observe
-from capar.pipelines.reobservation import observe_again
+from capar.pipelines.observation import observe, observe_again
 from capar.rulebook.changes import (
     add_reclassifying,
     bearing,

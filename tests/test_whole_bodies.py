@@ -17,7 +17,7 @@ from capar.model.errors import CaptureError, UnknownNameError
 from capar.model.facts import Touching
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
-from extractors.contact.own_hands import with_meeting_hands
+from extractors.contact.contacts import with_meeting_hands
 from extractors.measure import measure
 from extractors.readers.bundle.grouping import grouped
 

@@ -21,8 +21,7 @@ from capar.model.facts import (
     Touching,
     ZeroCrossing,
 )
-from extractors.handling_facts import SHIFTS
-from extractors.measure import Measurements, measure
+from extractors.measure import SHIFTS, Measurements, measure
 
 WINDOWED = (
     ZeroCrossing,

@@ -13,8 +13,7 @@ from capar.model import geometry
 from capar.model.capture import Stream
 from capar.model.errors import CaparError, UnknownNameError
 from capar.model.geometry import runs
-from extractors.signals.filters import lowpass, lowpass_orientations
-from extractors.signals.gaps import fill_gaps
+from extractors.signals.filters import fill_gaps, lowpass, lowpass_orientations
 from extractors.thresholds import Thresholds
 
 REFERENCE_S = 0.4

@@ -47,9 +47,8 @@ def inspect(
 def _calibration(place: str, settings: list[str], *, as_json: bool) -> None:
     from capar.model.json_form import to_json
     from capar.views.tables import calibration_tables
-    from extractors.calibration import calibrate
+    from extractors.calibration import calibrate, set_values
     from extractors.readers.bundle.capture_toml import read_capture
-    from extractors.set_values import set_values
 
     known = set_values(calibrate(read_capture(place)), settings)
     if as_json:
@@ -94,7 +93,7 @@ def _of_capture(place: str) -> dict[str, Any]:
 def _findings(capture: "Capture") -> "Iterator[Notice]":
     """What measuring finds to be wrong: motion without a mover, falls, sizes and distances."""
     from capar.model.notices import KINDS
-    from capar.pipelines.movers import unmoved_notices
+    from capar.pipelines.observation import unmoved_notices
     from capar_rules.borders.deflicker import steady
     from capar_rules.movers.movers import movers
     from extractors.measure import measure

@@ -115,7 +115,7 @@ def _from_device(options: LiveOptions, rules: "Profile") -> "Observation":
     from extractors.calibration import calibrate
     from extractors.devices.drivers import find_tracker
     from extractors.readers.bundle.capture_toml import read_capture
-    from extractors.signals.clock import time_step
+    from extractors.signals.intervals import time_step
 
     rig = read_capture(options.rig)
     rig = replace(rig, name=options.name or "live", sources=(), notices=())
@@ -377,9 +377,8 @@ def observe(
     # A mistake in the capture is reported before these are loaded, which takes longer.
     from capar.pipelines.observation import observe_measured
     from capar_rules.authoring.user_rules import new_rules_folder
-    from extractors.calibration import calibrate
+    from extractors.calibration import calibrate, set_values
     from extractors.measure import measure
-    from extractors.set_values import set_values
 
     measurements = measure(trial, set_values(calibrate(trial), set_) if set_ else None)
     observation = observe_measured(trial, measurements, rules=base, name=name)

@@ -27,8 +27,7 @@ from capar.pipelines.observation import facts_program, observe_measured
 from capar_rules.borders.ticks import Tick
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.solver import rule_file, solve
-from extractors.handling_facts import SHIFTS
-from extractors.measure import Measurements
+from extractors.measure import SHIFTS, Measurements
 from extractors.readers.bundle.capture_toml import read_capture
 
 PASS, OVER_TABLE, REGRASP = "pass", "over_table", "regrasp"

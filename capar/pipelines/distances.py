@@ -10,7 +10,7 @@ from jaxtyping import Float, Int
 from capar.model.calibration import Found, PairCalibration
 from capar_rules.explain.measured import Apart
 from capar_rules.explain.reaches import Between, Reach
-from extractors.contact.arrivals import SETTLES
+from extractors.contact.blows import SETTLES
 from extractors.contact.contacts import points_apart
 from extractors.contact.proximity import separation
 from extractors.contact.touch_distances import touchable

@@ -33,8 +33,7 @@ from capar_rules.explain.why_not import Alternative
 from capar_rules.explain.why_not import why_not as alternatives
 from extractors.calibration import thresholds_of
 from extractors.measure import Measurements, measure
-from extractors.motion.leaning import lean
-from extractors.motion.turning_points import most_turns
+from extractors.motion.phases import lean, most_turns
 from extractors.relations.arrangement import Pair
 
 AXES = ("along the x axis", "along the y axis", "up and down")

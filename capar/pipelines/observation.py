@@ -1,40 +1,111 @@
-"""The pipeline from a capture to an observation: measure, reason, represent."""
+"""From a capture to an observation: calibrate, measure, infer, represent; also by other rules."""
 
-from collections.abc import Iterable
+import ctypes
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from functools import cache
+from hashlib import sha256
 from itertools import groupby
 from pathlib import Path
 
+import numpy as np
+from jaxtyping import Float
+
 from capar import __version__
 from capar.model.calibration import Calibration
-from capar.model.capture import Capture, Notice, notice
-from capar.model.facts import Fact
+from capar.model.capture import Capture
+from capar.model.errors import FileError
+from capar.model.facts import Displaced, Fact, FlickerCorrection, MovedBy
 from capar.model.locations import ConstraintLocation, GuideLocation
+from capar.model.notices import Notice, notice
 from capar.model.observation import Observation, Segment
-from capar.pipelines.flicker import flicker_notices
-from capar.pipelines.freed_memory import return_freed_memory
-from capar.pipelines.movers import unmoved_notices
 from capar.pipelines.trials import trial_of
 from capar_rules.borders.border_numbers import number_borders
 from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.movers.movers import movers
-from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Inference, Key, infer
-from capar_rules.pars.naming_rules import naming_rules
-from capar_rules.pars.primitive_pars import Measured, ipars, upars
-from extractors.bodies.bodies import Bodies
-from extractors.bodies.observed_objects import observed_object
+from capar_rules.pars.pars import Measured, compose, ipars, naming_rules, upars
+from extractors.bodies.bodies import Bodies, observed_object
 from extractors.calibration import calibrate as calibration_of
 from extractors.calibration import thresholds_of
-from extractors.forces.force_styles import force_styles
+from extractors.forces.forces import force_styles
 from extractors.measure import Measurements, measure
-from extractors.relations.guide_locations import guide_location
-from extractors.segments.locations import constraint_location
-from extractors.segments.motion_kinds import followed, moved_path
-from extractors.segments.sampled_tracks import sampled_tracks
-from extractors.segments.styles import style
+from extractors.readers.bundle.capture_toml import read_capture, takes
+from extractors.relations.guides import guide_location
+from extractors.segments import constraint_location, followed, moved_path, sampled_tracks, style
 from extractors.thresholds import Thresholds
+from kb.findings import Stored
+
+
+def flicker_notices(facts: Iterable[Fact], rate_hz: float) -> Iterator[Notice]:
+    """A notice for each stretch that is not taken as it was measured.
+
+    Args:
+        facts: Measurements and corrections.
+        rate_hz: Frames a second.
+    """
+    for fact in facts:
+        if isinstance(fact, FlickerCorrection):
+            yield notice(
+                "flicker",
+                *dict.fromkeys((fact.body, fact.other)),
+                start_s=fact.first / rate_hz,
+                end_s=fact.last / rate_hz,
+                length_s=(fact.last - fact.first + 1) / rate_hz,
+                taken=fact.taken,
+            )
+
+
+def return_freed_memory() -> None:
+    """Give back what the allocator keeps of freed arrays; without effect where it is not glibc's.
+
+    Arrays of a long capture lie among smaller things that live on, so that glibc keeps their pages
+    when they are freed. What is allocated next, by the solver for instance, then adds to them.
+    """
+    trim = _malloc_trim()
+    if trim is not None:
+        trim(0)
+
+
+@cache
+def _malloc_trim() -> "ctypes._NamedFuncPointer | None":
+    try:
+        return ctypes.CDLL(None).malloc_trim
+    except (AttributeError, OSError, TypeError):  # musl, macOS; Windows has no such handle
+        return None
+
+
+UNKNOWN = "unknown"
+
+
+def unmoved_notices(facts: Iterable[Fact], times: Float[np.ndarray, "frames"]) -> Iterator[Notice]:
+    """A notice for each object in whose motion there are frames without a mover.
+
+    Args:
+        facts: Measurements and movers.
+        times: Clock of the capture [s].
+    """
+    moved: dict[str, int] = defaultdict(int)
+    lacking: dict[str, list[MovedBy]] = defaultdict(list)
+    for fact in facts:
+        if isinstance(fact, Displaced):
+            moved[fact.object] += fact.last - fact.first + 1
+        elif isinstance(fact, MovedBy) and fact.how == UNKNOWN:
+            lacking[fact.object].append(fact)
+    for thing, parts in sorted(lacking.items()):
+        worst = max(parts, key=lambda part: part.last - part.first)
+        frames = sum(part.last - part.first + 1 for part in parts)
+        yield notice(
+            "no-mover",
+            thing,
+            start_s=float(times[worst.first]),
+            end_s=float(times[worst.last]),
+            share=frames / max(moved[thing], 1),
+            times=len(parts),
+            why=worst.mover,
+        )
 
 
 def observe(
@@ -207,3 +278,63 @@ def _guides(measurements: Measurements) -> Iterable[GuideLocation]:
 
 def _violations(inference: Inference) -> Iterable[Notice]:
     return (notice("rule-violation", violation=each) for each in inference.violations)
+
+
+def observe_again(
+    files: Sequence[tuple[str, str]],
+    known: Stored,
+    measured: tuple[Fact, ...],
+    rules: Profile,
+    places: Sequence[Path],
+) -> Observation:
+    """The observation of the same files by other rules.
+
+    Args:
+        files: Path and SHA-256 of each file that it was made from.
+        known: The observation as it is stored.
+        measured: What was measured then; its flicker is resolved again only if it was then.
+        rules: The rules that are to name its segments.
+        places: Folders below which the files are.
+
+    Raises:
+        FileError: The files are not there, or have changed.
+    """
+    digests = sorted(digest for _, digest in files)
+    for place in places:
+        for path in sorted(place.rglob("*.toml")):
+            if path.is_file() and sha256(path.read_bytes()).hexdigest() in digests:
+                for trial in _trials(path, known.name):
+                    if sorted(each.sha256 for each in trial.sources) == digests:
+                        return _again(trial, known, measured, rules)
+    searched = ", ".join(map(str, places))
+    raise FileError(
+        files[0][0] if files else known.name,
+        f"and the other files from which {known.name!r} was observed are not below {searched}, or "
+        "have changed; nothing was renamed.",
+        "Name the folder that holds them with --captures, or observe and add it again.",
+    )
+
+
+def _again(
+    trial: Capture, known: Stored, measured: tuple[Fact, ...], rules: Profile
+) -> Observation:
+    """A capture observed again, its flicker resolved if it was in what was measured then."""
+    found = measure(trial)
+    steadied = rules.steady
+    for other in (rules.steady, not rules.steady):
+        facts_then = steady(found.facts) if other else found.facts
+        if set(facts_then) == set(measured):
+            steadied = other
+            break
+    return observe_measured(trial, found, rules=replace(rules, steady=steadied), name=known.action)
+
+
+def _trials(path: Path, name: str) -> Iterator[Capture]:
+    """The captures that a file describes and that may bear a name: of its takes, or the one."""
+    known = takes(path)
+    # A capture is called after its take, so that the others need not be read.
+    named = sorted((each for each in known if each in name), key=lambda each: (-len(each), each))
+    for place in [f"{path}:{each}" for each in named] if known else [path]:
+        trial = read_capture(place)
+        if trial.name == name:
+            yield trial

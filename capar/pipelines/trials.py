@@ -4,7 +4,7 @@ from pathlib import Path
 
 from capar.model.capture import Capture
 from capar.model.errors import CaparError
-from extractors.contact.own_hands import with_meeting_hands
+from extractors.contact.contacts import with_meeting_hands
 from extractors.readers.bundle.capture_toml import read_capture
 
 

@@ -6,8 +6,7 @@ from pathlib import Path
 
 from capar.model.facts import Fact
 from capar.model.observation import Observation
-from capar.pipelines.observation import facts_program
-from capar.pipelines.reobservation import observe_again
+from capar.pipelines.observation import facts_program, observe_again
 from capar_rules.authoring.user_primitives import checked_draft
 from capar_rules.authoring.user_rules import put_back, take_away, unbroken
 from capar_rules.engine.profiles import Profile

@@ -14,8 +14,7 @@ from capar_rules.authoring.glossary import required_facts
 from capar_rules.authoring.user_primitives import LACKING, Example, new_rule, rules_of, written
 from capar_rules.borders.border_numbers import Tick, number_borders
 from capar_rules.engine.profiles import Profile, profile
-from capar_rules.engine.slicing import FITS, signatures_below
-from capar_rules.engine.syntax import Statement, parse, parse_text
+from capar_rules.engine.syntax import FITS, Statement, parse, parse_text, signatures_below
 from capar_rules.lint.checking import admitted_profile
 from capar_rules.lint.text_checks import known
 from capar_rules.lint.world_checks import rivals

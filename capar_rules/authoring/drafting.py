@@ -11,10 +11,8 @@ from capar.model.observation import ObservedLink, Segment
 from capar.model.par import UNKNOWN
 from capar_rules.borders.border_numbers import number_borders
 from capar_rules.engine.profiles import Profile
-from capar_rules.engine.search import optima, worlds
-from capar_rules.engine.slicing import towards
-from capar_rules.engine.solver import rule_file, solve
-from capar_rules.engine.syntax import parse, parse_text, split_arguments
+from capar_rules.engine.solver import optima, rule_file, solve, worlds
+from capar_rules.engine.syntax import parse, parse_text, split_arguments, towards
 
 Place = tuple[str, int]
 """A segment: its end-effector, and the tick at which it begins."""

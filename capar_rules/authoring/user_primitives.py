@@ -25,8 +25,7 @@ from capar.model.par import FeatureSet
 from capar_rules.authoring.user_rules import actionary_rules, make_folder, taught
 from capar_rules.authoring.user_rules import user_rules as user_rules
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.engine.slicing import FITS
-from capar_rules.engine.syntax import Statement, parse, parse_text, split_arguments
+from capar_rules.engine.syntax import FITS, Statement, parse, parse_text, split_arguments
 from capar_rules.lint.checking import admitted_profile, check, require
 from capar_rules.lint.findings import errors
 from capar_rules.lint.text_checks import known, read_rules

@@ -1,39 +1,389 @@
-"""Ticks: the frames of a link at which anything may change, numbered so that rules join neighbours.
-
-Joining intervals by comparing frames inside the rules is quadratic or worse; numbered outside, a
-rule meets a border only with its neighbour, and grounding stays linear in the number of events.
-"""
+"""Numbered borders of segments, and which facts begin, end and hold at them."""
 
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import accumulate
+from typing import Any, cast
 
 from capar.model.facts import (
     Displaced,
     Fact,
+    FactIntervals,
     Frames,
+    Interval,
     Link,
+    LookingAt,
     Moving,
+    Observed,
+    OfAgent,
     Pause,
     RateMhz,
     Resting,
+    Seated,
     Touching,
     ZeroCrossing,
 )
-from capar_rules.borders.motion_borders import Edge, as_borne, by_pair, edges, landings, true_ends
-from capar_rules.borders.shared_contacts import by_object, overlapping, shared
-from capar_rules.borders.spans import Stretches
 from capar_rules.borders.ticks import FreeBetween as FreeBetween
 from capar_rules.borders.ticks import LastTick as LastTick
-from capar_rules.borders.ticks import Meanwhile as Meanwhile
+from capar_rules.borders.ticks import Meanwhile, Shares, Undisturbed, in_frames, times
 from capar_rules.borders.ticks import MovesBetween as MovesBetween
 from capar_rules.borders.ticks import MovesDuring as MovesDuring
-from capar_rules.borders.ticks import Shares as Shares
 from capar_rules.borders.ticks import Tick as Tick
 from capar_rules.borders.ticks import Within as Within
-from capar_rules.borders.times import in_frames, times
-from capar_rules.borders.undisturbed_rest import undisturbed
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class SetsOff(Fact):
+    """The tick at which a held object sets off on the motion that has this first frame."""
+
+    predicate = "sets_off"
+    ee: str
+    object: str
+    first: int
+    tick: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Settles(Fact):
+    """The tick at which it settles after the motion that has this last frame."""
+
+    predicate = "settles"
+    ee: str
+    object: str
+    last: int
+    tick: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Lands(Fact):
+    """The tick at which a body truly comes to touch another one, in the contact since a frame."""
+
+    predicate = "lands"
+    ee: str
+    body: str
+    other: str
+    since: int
+    tick: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Leaves(Fact):
+    """The tick at which it truly leaves it."""
+
+    predicate = "leaves"
+    ee: str
+    body: str
+    other: str
+    since: int
+    tick: int
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """A frame at which a motion begins or ends by its floor, and when it truly does."""
+
+    kind: type[SetsOff] | type[Settles]
+    object: str
+    frame: int
+    refined: int
+
+
+def edges(
+    own: Sequence[Touching],
+    moving: Iterable[Moving],
+    displaced: Iterable[Displaced],
+) -> tuple[Edge, ...]:
+    """The edges of every motion that lie within a contact of the end-effector with the object.
+
+    Args:
+        own: The end-effector's contacts, in order of time.
+        moving: Motions of what it touches.
+        displaced: When those truly began and ended.
+    """
+    contacts: dict[str, list[Touching]] = {}
+    for contact in own:
+        contacts.setdefault(contact.other, []).append(contact)
+    true: dict[str, list[Displaced]] = {}
+    for edge in displaced:
+        true.setdefault(edge.object, []).append(edge)
+    found = []
+    for motion in moving:
+        held = contacts.get(motion.object, [])
+        start, stop = _around(held, motion.first), _around(held, motion.last)
+        within = [edge for edge in true.get(motion.object, ()) if _meet(edge, motion)]
+        if start:
+            frame = min((edge.first for edge in within), default=motion.first)
+            frame = max(min(frame, motion.first), start.first)
+            found.append(Edge(SetsOff, motion.object, motion.first, frame))
+        if stop:
+            frame = max((edge.last for edge in within), default=motion.last)
+            frame = min(max(frame, motion.last), stop.last)
+            found.append(Edge(Settles, motion.object, motion.last, frame))
+    return tuple(found)
+
+
+def _meet(one: Displaced, other: Moving) -> bool:
+    return one.first <= other.last and other.first <= one.last
+
+
+def _around(contacts: Sequence[Touching], frame: int) -> Touching | None:
+    """The contact that a frame lies in."""
+    index = bisect_right(contacts, frame, key=lambda each: each.first) - 1
+    return contacts[index] if index >= 0 and contacts[index].last >= frame else None
+
+
+Seats = dict[tuple[str, str], list[Seated]]
+"""When bodies are down on others, in time, by the two."""
+
+
+def by_pair(facts: Iterable[Fact]) -> Seats:
+    """When bodies are down on others, by the two."""
+    out: Seats = {}
+    for fact in facts:
+        if isinstance(fact, Seated):
+            out.setdefault((fact.body, fact.other), []).append(fact)
+    return {pair: sorted(seats, key=lambda each: each.first) for pair, seats in out.items()}
+
+
+def true_ends(contact: Touching, seats: Seats) -> tuple[int, int]:
+    """The frames at which a body truly comes down on another one and leaves it.
+
+    Where nothing says so, the first and the last frame of their contact.
+    """
+    own = [
+        each
+        for each in seats.get((contact.body, contact.other), ())
+        if contact.first <= each.first and each.last <= contact.last
+    ]
+    return (own[0].first, own[-1].last) if own else (contact.first, contact.last)
+
+
+def as_borne(contact: Touching, seats: Seats) -> Touching:
+    """An end-effector's contact, from when a thing truly comes down on it until it leaves it.
+
+    The contact itself where the end-effector does not bear the thing.
+    """
+    first, last = true_ends(replace(contact, body=contact.other, other=contact.body), seats)
+    return replace(contact, first=first, last=last)
+
+
+def landings(
+    ee: str,
+    ticks: Sequence[int],
+    own: Iterable[Touching],
+    others: Iterable[Touching],
+    seats: Seats,
+) -> Iterator[Fact]:
+    """When what the end-effector handles, or itself, truly begins and ceases to touch what.
+
+    Args:
+        ee: The end-effector.
+        ticks: Frames of its link's ticks, ascending; the true ends are among them.
+        own: Its own contacts.
+        others: Contacts of what it handles.
+        seats: When bodies are down on others.
+    """
+    for contact in own:
+        borne = as_borne(contact, seats)
+        yield Lands(ee, ee, contact.other, contact.first, bisect_left(ticks, borne.first))
+        yield Leaves(ee, ee, contact.other, contact.first, bisect_left(ticks, borne.last))
+    for contact in others:
+        first, last = true_ends(contact, seats)
+        yield Lands(ee, contact.body, contact.other, contact.first, bisect_left(ticks, first))
+        yield Leaves(ee, contact.body, contact.other, contact.first, bisect_left(ticks, last))
+
+
+Contacts = Mapping[str, Sequence[Touching]]
+"""Contacts of one end-effector by what it touches, each in order of time and disjoint."""
+
+
+def by_object(touching: Iterable[Touching]) -> dict[str, list[Touching]]:
+    """Contacts of one end-effector, in order of time, by what it touches."""
+    out: dict[str, list[Touching]] = {}
+    for touch in touching:
+        out.setdefault(touch.other, []).append(touch)
+    return out
+
+
+def overlapping(
+    own: Iterable[Touching], others: Sequence[Contacts]
+) -> list[tuple[Touching, Touching]]:
+    """Each contact of an end-effector with those of others that share a frame and the object."""
+    return [
+        (touch, each)
+        for touch in own
+        for contacts in others
+        for each in _sharing(contacts.get(touch.other, ()), touch)
+    ]
+
+
+def _sharing(contacts: Sequence[Touching], touch: Touching) -> Sequence[Touching]:
+    first = bisect_left(contacts, touch.first, key=lambda each: each.last)
+    return contacts[first : bisect_right(contacts, touch.last, key=lambda each: each.first)]
+
+
+def shared(
+    ee: str, ticks: Sequence[int], pairs: Iterable[tuple[Touching, Touching]], *, rate_hz: float
+) -> Iterator[Fact]:
+    """Which contact of another end-effector came before or goes on after one's own, and when.
+
+    Args:
+        ee: The end-effector.
+        ticks: Frames of its link's ticks, ascending.
+        pairs: Its own contacts, each with one of another end-effector.
+        rate_hz: Frames a second [Hz].
+    """
+    margin = in_frames(times().merge_ms, rate_hz)
+    for touch, each in pairs:
+        begins, ends = each.first - touch.first, each.last - touch.last
+        if begins < -margin and ends < -margin:
+            yield Shares(ee, touch.other, touch.first, each.body, "before")
+        if begins > margin and ends > margin:
+            yield Shares(ee, touch.other, touch.first, each.body, "after")
+        latest = len(ticks) - 2
+        if begins >= 0:
+            tick = min(bisect_right(ticks, each.first) - 1, latest)
+            yield Meanwhile(ee, tick, "begins", each.body, touch.other, each.first)
+        if ends <= 0:
+            tick = max(bisect_left(ticks, each.last) - 1, 0)
+            yield Meanwhile(ee, tick, "ends", each.body, touch.other, each.first)
+
+
+Stretch = tuple[str, str, str, int, int]
+"""What it is, the body, the other body (or the same), first and last frame."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Spans(Fact):
+    """The ticks of a link that lie inside a stretch."""
+
+    predicate = "spans"
+    ee: str
+    how: str
+    body: str
+    other: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Encloses(Fact):
+    """The last tick of a link before a stretch, and the first one after it, or at its ends."""
+
+    predicate = "encloses"
+    ee: str
+    how: str
+    body: str
+    other: str
+    first: int
+    last: int
+
+
+class Stretches:
+    """Every stretch by the body that it is about, in order of time; looks also by what is seen."""
+
+    def __init__(self, facts: Sequence[Fact]) -> None:
+        self._by_body: dict[str, list[Stretch]] = defaultdict(list)
+        self._seen: dict[str, list[Stretch]] = defaultdict(list)
+        self._touches: dict[str, set[str]] = defaultdict(set)
+        self._agents = {fact.body: fact.agent for fact in facts if isinstance(fact, OfAgent)}
+        self._borders: dict[str, list[Interval]] = defaultdict(list)
+        acting = {fact.ee for fact in facts if isinstance(fact, Link)}
+        intervals = FactIntervals(facts)
+        for fact in facts:
+            if isinstance(fact, Touching):
+                self._touches[fact.body].add(fact.other)
+            for stretch in _stretches(fact, intervals):
+                if isinstance(fact, LookingAt):
+                    self._seen[fact.object].append(stretch)
+                    if fact.sensor not in acting:
+                        continue
+                self._add(stretch, border=cast(Observed, fact).is_border())
+        for stretches in self._by_body.values():
+            stretches.sort(key=lambda each: (each[3], each))
+
+    def _add(self, stretch: Stretch, *, border: bool) -> None:
+        _, body, _, first, last = stretch
+        self._by_body[body].append(stretch)
+        if border:
+            self._borders[body].append((first, last))
+
+    def frames(self, body: str) -> Iterable[tuple[int, int]]:
+        """First and last frames at which rules may draw a border for this body."""
+        return self._borders.get(body, ())
+
+    def numbered(
+        self, ee: str, ticks: Sequence[int], reach: dict[str, list[tuple[int, int]]]
+    ) -> Iterable[Fact]:
+        """The stretches of an end-effector and of what it handles, and looks of its agent.
+
+        What is handled may be looked at long before, and so may that which it then touches.
+        """
+        whole = [(ticks[0], ticks[-1])]
+        for body, spans in {**reach, ee: whole}.items():
+            for how, _, other, first, last in self._by_body.get(body, ()):
+                if _meets(spans, first, last):
+                    yield from _ranked(ee, (how, body, other, first, last), ticks)
+        concerned = {*reach, *(other for name in reach for other in self._touches.get(name, ()))}
+        for name in sorted(concerned):
+            for look in self._seen.get(name, ()):
+                if look[1] != ee and self._agents.get(look[1]) == self._agents.get(ee):
+                    yield from _ranked(ee, look, ticks)
+
+
+def _stretches(fact: Fact, intervals: FactIntervals) -> Iterable[Stretch]:
+    """The stretches that a fact states, as it declares."""
+    if not isinstance(fact, Observed) or not fact.declaration.stretch:
+        return
+    interval = intervals.of(fact)
+    if interval is not None:
+        for other in fact.other_bodies():
+            yield fact.stretch(), fact.subject(), other, *interval
+
+
+def _meets(times: Sequence[tuple[int, int]], first: int, last: int) -> bool:
+    """Whether one of disjoint stretches in order shares a frame with an interval."""
+    index = bisect_right(times, (last, 1 << 62)) - 1
+    return index >= 0 and times[index][1] >= first
+
+
+def _ranked(ee: str, stretch: Stretch, ticks: Sequence[int]) -> Iterable[Fact]:
+    how, body, other, first, last = stretch
+    inside = bisect_left(ticks, first), bisect_right(ticks, last) - 1
+    if inside[0] <= inside[1]:
+        yield Spans(ee, how, body, other, *inside)
+    around = bisect_right(ticks, first) - 1, min(bisect_left(ticks, last), len(ticks) - 1)
+    yield Encloses(ee, how, body, other, max(around[0], 0), around[1])
+
+
+def undisturbed(
+    ee: str, ticks: Sequence[int], rests: Iterable[Resting], own: Sequence[Touching]
+) -> Iterator[Undisturbed]:
+    """The rests of an end-effector in which no contact of its own has a tick, or none any more.
+
+    Of a rest in which it is relieved of all that it touches, what follows from there on counts: a
+    palm from which the last thing is taken rests on. Each costs two searches, however many ticks or
+    contacts it holds.
+
+    Args:
+        ee: The end-effector.
+        ticks: The frames of its link's ticks, in order.
+        rests: When it rests.
+        own: Its contacts, by their first frames.
+    """
+    begins = [each.first for each in own]
+    latest = list(accumulate((each.last for each in own), max))
+    for rest in rests:
+        first, last = bisect_left(ticks, rest.first), bisect_right(ticks, rest.last) - 1
+        if first > last:
+            continue
+        before = bisect_right(begins, ticks[last])
+        if before == 0 or latest[before - 1] < ticks[first]:
+            yield Undisturbed(ee, first, last)
+        elif ticks[first] < latest[before - 1] < ticks[last]:
+            yield Undisturbed(ee, bisect_left(ticks, latest[before - 1]), last)
 
 
 def number_borders(facts: Sequence[Fact], *, crossings_only: bool) -> tuple[Fact, ...]:

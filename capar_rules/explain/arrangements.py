@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from capar_rules.borders.times import constants, in_frames, times
+from capar_rules.borders.ticks import constants, in_frames, times
 from capar_rules.explain import quantities
 from capar_rules.explain.clock import Clock
 

@@ -5,10 +5,16 @@ from functools import cache
 
 from capar.model.facts import Fact, program
 from capar.model.observation import Segment
-from capar_rules.engine.search import worlds
-from capar_rules.engine.slicing import heads_of, signatures_below, towards
-from capar_rules.engine.solver import rule_file
-from capar_rules.engine.syntax import Signature, Statement, parse, split_arguments
+from capar_rules.engine.solver import rule_file, worlds
+from capar_rules.engine.syntax import (
+    Signature,
+    Statement,
+    heads_of,
+    parse,
+    signatures_below,
+    split_arguments,
+    towards,
+)
 from capar_rules.lint.audit import physics, words_of
 
 READ: tuple[Signature, ...] = (("reads", 5), ("holding", 4), ("moved", 2))

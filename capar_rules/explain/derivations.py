@@ -10,9 +10,8 @@ import clingo
 
 from capar.model.errors import RuleError
 from capar.model.facts import Fact
-from capar_rules.engine.search import ERRORS_ONLY
-from capar_rules.engine.slicing import firing, towards
-from capar_rules.engine.syntax import Literal, Place, Signature, Statement
+from capar_rules.engine.solver import ERRORS_ONLY
+from capar_rules.engine.syntax import Literal, Place, Signature, Statement, firing, towards
 from capar_rules.explain.numbered import NUMBERS, WINDOW, Numbering
 
 ABSENT = "absent"

@@ -1,6 +1,6 @@
 """The arguments of atoms as sentences have them: names, times and distances."""
 
-from capar_rules.borders.times import constants
+from capar_rules.borders.ticks import constants
 from capar_rules.explain import arrangements, quantities
 from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG
 from capar_rules.explain.told_argument import UNBOUND as UNBOUND

@@ -9,9 +9,16 @@ from pathlib import Path
 from capar.model.errors import RuleError
 from capar.model.facts import Fact, program
 from capar.model.observation import Segment
-from capar_rules.engine.search import worlds
-from capar_rules.engine.slicing import FITS, named_node, nodes_read, towards
-from capar_rules.engine.syntax import Literal, Statement, split_arguments
+from capar_rules.engine.solver import worlds
+from capar_rules.engine.syntax import (
+    FITS,
+    Literal,
+    Statement,
+    named_node,
+    nodes_read,
+    split_arguments,
+    towards,
+)
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.counterfactuals import SCENE, measured
 from capar_rules.explain.explanation import Explainer

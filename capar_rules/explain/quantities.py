@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from capar_rules.borders.times import constants
+from capar_rules.borders.ticks import constants
 
 LEAST_M = 0.01
 """Shorter ways are told as less than that [m]."""

@@ -4,8 +4,15 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from capar_rules.engine.slicing import FITS, named_node, nodes
-from capar_rules.engine.syntax import Literal, Statement, parse_text, split_arguments
+from capar_rules.engine.syntax import (
+    FITS,
+    Literal,
+    Statement,
+    named_node,
+    nodes,
+    parse_text,
+    split_arguments,
+)
 from capar_rules.explain.sentences import Sentences
 
 MOST_FORMS = 24

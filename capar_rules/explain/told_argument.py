@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from capar_rules.borders.times import constants, in_frames, times
+from capar_rules.borders.ticks import constants, in_frames, times
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.quantities import Way
 

@@ -1,6 +1,6 @@
 """How arguments tell arrangements: what bears or holds what, and which way a thing goes."""
 
-from capar_rules.borders.times import constants
+from capar_rules.borders.ticks import constants
 from capar_rules.explain import arrangements, quantities
 from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG
 from capar_rules.explain.told_argument import UNBOUND, ToldArgument

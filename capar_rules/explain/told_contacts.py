@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from capar_rules.borders.times import constants, in_frames, times
+from capar_rules.borders.ticks import constants, in_frames, times
 from capar_rules.explain import arrangements, quantities
 from capar_rules.explain.told_argument import UNBOUND, ToldArgument
 

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping
 
-from capar_rules.borders.times import constants, in_frames, times
+from capar_rules.borders.ticks import constants, in_frames, times
 from capar_rules.explain import arrangements, quantities
 from capar_rules.explain.quantities import LEAST_M, Shortfall, Way
 from capar_rules.explain.told_argument import UNBOUND, ToldArgument

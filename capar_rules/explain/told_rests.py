@@ -2,7 +2,7 @@
 
 import math
 
-from capar_rules.borders.times import constants, in_frames
+from capar_rules.borders.ticks import constants, in_frames
 from capar_rules.explain import arrangements, quantities
 from capar_rules.explain.quantities import LEAST_M
 from capar_rules.explain.told_argument import UNBOUND, ToldArgument

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from capar.model.errors import RuleError, UnknownNameError
 from capar.model.observation import Segment
-from capar_rules.engine.search import Atom, optima
+from capar_rules.engine.solver import Atom, optima
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.counterfactuals import measured, worlds_of
 from capar_rules.explain.explanation import Explainer

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from capar.model.facts import Fact, FactIntervals, Observed, RateMhz
 from capar_rules.borders.border_numbers import LastTick, MovesDuring, Shares, Tick, Within
-from capar_rules.borders.times import in_frames, times
+from capar_rules.borders.ticks import in_frames, times
 
 BUCKET = 256
 """Number of frames, or ticks, for each entry of the index."""

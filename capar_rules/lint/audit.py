@@ -10,10 +10,17 @@ from pathlib import Path
 from typing import Any
 
 from capar_rules.engine.profiles import profile
-from capar_rules.engine.search import Atom, brave, worlds
-from capar_rules.engine.slicing import FITS, heads_of, signatures_below, towards
-from capar_rules.engine.solver import rule_file
-from capar_rules.engine.syntax import Signature, Statement, parse, parse_text
+from capar_rules.engine.solver import Atom, brave, rule_file, worlds
+from capar_rules.engine.syntax import (
+    FITS,
+    Signature,
+    Statement,
+    heads_of,
+    parse,
+    parse_text,
+    signatures_below,
+    towards,
+)
 
 ASKED: tuple[Signature, ...] = (
     ("nameless", 4),

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from capar.model.errors import RuleError
-from capar_rules.engine.search import brave, understand
+from capar_rules.engine.solver import brave, understand
 from capar_rules.engine.syntax import Place
 
 ERROR, NOTE = "error", "note"

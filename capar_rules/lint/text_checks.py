@@ -9,7 +9,6 @@ from pathlib import Path
 
 from capar.model.errors import RuleError
 from capar.model.facts import LARGEST
-from capar_rules.engine.slicing import heads_of, nodes, nodes_read
 from capar_rules.engine.solver import rule_file
 from capar_rules.engine.syntax import (
     LARGEST_BYTES,
@@ -18,6 +17,9 @@ from capar_rules.engine.syntax import (
     Place,
     Signature,
     Statement,
+    heads_of,
+    nodes,
+    nodes_read,
     parse_text,
     split_arguments,
 )

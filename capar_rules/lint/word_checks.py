@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 
 from capar.model.par import ACTION_NAME
-from capar_rules.engine.slicing import FITS
-from capar_rules.engine.syntax import Atom, Literal, Signature, Statement, split_arguments
+from capar_rules.engine.syntax import FITS, Atom, Literal, Signature, Statement, split_arguments
 from capar_rules.lint.findings import ERROR, NOTE, Finding
 from capar_rules.lint.text_checks import AUTHORED, Known, introduced_names
 

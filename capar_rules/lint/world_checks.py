@@ -8,17 +8,20 @@ from pathlib import Path
 
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.profiles import profile as shipped
-from capar_rules.engine.search import Atom as Derived
-from capar_rules.engine.slicing import FITS, heads_of, signatures_below, towards
+from capar_rules.engine.solver import Atom as Derived
 from capar_rules.engine.syntax import (
+    FITS,
     Atom,
     Literal,
     Place,
     Signature,
     Statement,
+    heads_of,
     parse,
     parse_text,
+    signatures_below,
     split_arguments,
+    towards,
 )
 from capar_rules.lint.audit import (
     ASKED,

@@ -11,9 +11,13 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.calibration import BodyCalibration, FixedPose
 from capar.model.capture import Sensor, Stream, TagObject, TagType
-from extractors.signals.filters import lowpass, lowpass_orientations
-from extractors.signals.gaps import fill_gaps
-from extractors.signals.noise import Noise, noise_at_rest
+from extractors.signals.filters import (
+    Noise,
+    fill_gaps,
+    lowpass,
+    lowpass_orientations,
+    noise_at_rest,
+)
 from extractors.thresholds import Thresholds
 
 

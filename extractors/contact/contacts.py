@@ -1,35 +1,398 @@
-"""Which bodies touch, from which frame to which, at every frame of a capture (thesis 3.2)."""
+"""Intervals of contact between bodies."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from capar.model import geometry
-from capar.model.calibration import Calibration, Found, PairCalibration
-from capar.model.capture import Capture, PivotContact, TagType
-from extractors.bodies.bodies import Bodies
-from extractors.bodies.body_geometry import BodyGeometry
+from capar.model.calibration import Calibration, Found, MovingGround, PairCalibration
+from capar.model.capture import Capture, PivotContact, Sensor, TagObject, TagType
+from capar.model.geometry import runs
+from extractors.bodies.bodies import Bodies, BodyGeometry, blocks
 from extractors.bodies.poses import Poses
-from extractors.contact.earlier_answers import EarlierAnswers
-from extractors.contact.footing import gliding, soles
-from extractors.contact.own_hands import counted_meetings
-from extractors.contact.passing import in_passing
-from extractors.contact.proximity import Body, distance, near
-from extractors.contact.screening import screened
+from extractors.contact.proximity import Body, body, distance, near, screened
+from extractors.contact.surfaces import surface
 from extractors.contact.touch_distances import (
+    Evidence,
+    TouchPoints,
     estimated_pair,
     stated_pair,
     touchable,
     with_gaps,
 )
-from extractors.contact.touch_evidence import Evidence
-from extractors.contact.touch_points import TouchPoints
-from extractors.signals.clock import frame_rate
+from extractors.motion.object_motion import resting
 from extractors.signals.filters import gains
-from extractors.signals.intervals import Interval, intervals, mask
+from extractors.signals.intervals import Interval, duration, frame_rate, intervals, mask
 from extractors.thresholds import Thresholds
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """A question about two bodies, and its answer."""
+
+    first: int
+    one: Body
+    two: Body
+    answer: Bool[np.ndarray, "frames"]
+
+
+class EarlierAnswers:
+    """What was answered in the window before; asked anew is only where a pose differs.
+
+    The same poses have the same answer, so that nothing has to be known about filters: frames near
+    the end of a window, whose low-passed poses later frames change, are asked about again.
+    """
+
+    def __init__(self) -> None:
+        self._first = 0
+        self._asked: dict[tuple[str, str, float], _Asked] = {}
+
+    def begin(self, first: int) -> None:
+        """Begin a window.
+
+        Args:
+            first: The frame of the recording that is the window's first.
+        """
+        self._first = first
+
+    def near(
+        self, names: tuple[str, str], one: Body, two: Body, *, distance_m: float
+    ) -> Bool[np.ndarray, "frames"]:
+        """What ``extractors.contact.proximity.near`` answers.
+
+        Args:
+            names: The names of the two bodies.
+            one: The first body through the window.
+            two: The second one.
+            distance_m: Distance up to which they are near [m].
+        """
+        known = self._asked.get((*names, distance_m))
+        out = np.zeros(len(one.positions), dtype=bool)
+        anew = np.ones(len(out), dtype=bool)
+        if known and known.one.surface is one.surface and known.two.surface is two.surface:
+            later = self._first - known.first
+            here = slice(max(0, -later), max(0, min(len(out), len(known.answer) - later)))
+            there = slice(here.start + later, here.stop + later)
+            if here.start < here.stop:
+                same = _same(one, here, known.one, there) & _same(two, here, known.two, there)
+                out[here] = known.answer[there] & same
+                anew[here] = ~same
+        some = np.flatnonzero(anew)
+        if some.size == len(out):
+            out = near(one, two, distance_m=distance_m)
+        elif some.size:
+            out[some] = near(_at(one, some), _at(two, some), distance_m=distance_m)
+        self._asked[*names, distance_m] = _Asked(self._first, one, two, out)
+        return out
+
+
+def _same(one: Body, here: slice, known: Body, there: slice) -> Bool[np.ndarray, "some"]:
+    """At which frames a body has the pose that it had; never where it is lost."""
+    places = (one.positions[here] == known.positions[there]).all(axis=1)
+    return places & (one.orientations[here] == known.orientations[there]).all(axis=1)
+
+
+def _at(each: Body, frames: Int[np.ndarray, "some"]) -> Body:
+    return Body(
+        each.surface,
+        each.positions[frames],
+        each.orientations[frames],
+        each.centres[frames],
+        each.rests,
+    )
+
+
+FOOT = "foot"
+"""The general type of an end-effector that may stand."""
+
+
+def soles(capture: Capture) -> Mapping[str, str]:
+    """The agent of each sensor that is an acting foot, or is part of one, by sensor."""
+    return {
+        part.name: capture.agent_of(part)
+        for foot in capture.acting
+        if foot.end_effector == FOOT
+        for part in capture.parts_of(foot.name)
+    }
+
+
+def gliding(
+    foot: BodyGeometry,
+    ground: BodyGeometry,
+    thresholds: Thresholds,
+    ground_mps: tuple[float, float] = (0.0, 0.0),
+) -> Bool[np.ndarray, "frames"]:
+    """Frames in which no part of a foot's underside is nearly still against the ground.
+
+    Only a foot whose middle is above the whole ground can glide over it; what it does to walls is
+    not asked here, nor is a slope or a room whose floor and walls are one body.
+
+    Args:
+        foot: The foot.
+        ground: A fixed body that it may stand on.
+        thresholds: How slowly a foot that is set down shifts.
+        ground_mps: The level velocity of the ground's surface [m/s].
+    """
+    pace = np.linalg.norm(sole_velocities(foot, thresholds, ground_mps) - ground_mps, axis=1)
+    with np.errstate(invalid="ignore"):
+        above = foot.middles[:, 2] > ground.boxes[1][:, 2]
+        return np.asarray(above & (pace > thresholds.foot_glides_mps))
+
+
+def sole_velocities(
+    foot: BodyGeometry, thresholds: Thresholds, ground_mps: tuple[float, float] = (0.0, 0.0)
+) -> Float[np.ndarray, "frames 2"]:
+    """Level velocity of the lowest part of a foot that is stillest against the ground [m/s].
+
+    A foot rolls over its heel and its ball: while any of its lowest points is still, it stands.
+    Beside a loss of tracking the nearest velocity that is known is taken.
+    """
+    count = len(foot.middles)
+    out = np.full((count, 2), np.nan)
+    if count < 2:
+        return out
+    stream = foot.poses.smooth
+    for block in blocks(count):
+        first, last = max(block.start - 1, 0), min(block.stop + 1, count)
+        points = foot.middles[first:last, None] + np.swapaxes(
+            foot.turns_at(slice(first, last)) @ foot.corners.T, 1, 2
+        )
+        moves = np.gradient(points[:, :, :2], stream.times[first:last], axis=0)
+        height = points[:, :, 2]
+        lowest = height <= height.min(axis=1, keepdims=True) + thresholds.patch_m
+        pace = np.linalg.norm(moves - ground_mps, axis=2)
+        pace = np.where(lowest & ~np.isnan(pace), pace, np.inf)
+        stillest = moves[np.arange(len(moves)), pace.argmin(axis=1)]
+        out[block] = stillest[block.start - first : block.stop - first]
+    return _known_nearest(out, foot.poses.lost)
+
+
+def _known_nearest(
+    velocities: Float[np.ndarray, "frames 2"], lost: Bool[np.ndarray, "frames"]
+) -> Float[np.ndarray, "frames 2"]:
+    """Velocities with those that are unknown beside a loss filled; where lost they stay unknown."""
+    unknown = np.isnan(velocities).any(axis=1)
+    known = np.flatnonzero(~unknown)
+    for frame in np.flatnonzero(unknown & ~lost) if known.size else ():
+        velocities[frame] = velocities[known[np.abs(known - frame).argmin()]]
+    return velocities
+
+
+def moving_grounds(
+    capture: Capture, bodies: Bodies, touch_m: Mapping[tuple[str, str], float], limits: Thresholds
+) -> Iterator[MovingGround]:
+    """Grounds over which the two feet of an agent go by steadily: the belts of treadmills.
+
+    A ground is taken to move if neither foot ever rests in the world, and if each of them, through
+    most of its contact with the ground, has the same velocity, beyond that of a foot that is set
+    down. Against a belt that has stopped for a while feet rest, and no velocity is found; who
+    glides on skates without a rest cannot be told from who walks on a belt.
+
+    Args:
+        capture: The recording.
+        bodies: Its bodies.
+        touch_m: Distance up to which each pair of bodies touches [m].
+        limits: How slowly a foot that is set down shifts, and in what share of its contact.
+    """
+    feet: dict[str, list[BodyGeometry]] = {}
+    for name, agent in soles(capture).items():
+        feet.setdefault(agent, []).append(bodies.sensors[name])
+    grounds = [thing.name for thing in capture.objects if thing.tag is TagType.FIXED]
+    for agent, own in feet.items():
+        if len(own) < 2 or any(resting(foot.poses, limits) for foot in own):
+            continue
+        for name in grounds:
+            distances = [touch_m.get((foot.name, name)) for foot in own]
+            velocity = _common_velocity(own, bodies.objects[name], distances, limits)
+            if velocity is not None:
+                yield MovingGround(agent, name, velocity)
+
+
+def _common_velocity(
+    feet: Sequence[BodyGeometry],
+    ground: BodyGeometry,
+    distances_m: Sequence[float | None],
+    limits: Thresholds,
+) -> tuple[float, float] | None:
+    """The velocity that every foot has through most of its contact with a ground [m/s]."""
+    moves = []
+    for foot, distance_m in zip(feet, distances_m, strict=True):
+        surfaces = touchable(foot), touchable(ground)
+        if distance_m is None or surfaces[0] is None or surfaces[1] is None:
+            return None
+        down = near(surfaces[0], surfaces[1], distance_m=distance_m)
+        own = sole_velocities(foot, limits)[down]
+        own = own[~np.isnan(own).any(axis=1)]
+        times = foot.poses.smooth.times
+        if len(own) * float(times[1] - times[0]) < limits.rest_minimum_s:
+            return None
+        moves.append(own)
+    middle = np.median([np.median(own, axis=0) for own in moves], axis=0)
+    if np.hypot(*middle) <= limits.foot_glides_mps:
+        return None
+    steady = [np.linalg.norm(own - middle, axis=1) <= limits.foot_glides_mps for own in moves]
+    if min(frames.mean() for frames in steady) < limits.belt_share:
+        return None
+    with_it = np.concatenate([own[frames] for own, frames in zip(moves, steady, strict=True)])
+    x, y = (float(value) for value in np.median(with_it, axis=0))
+    return x, y
+
+
+HAND = "hand"
+
+
+def with_meeting_hands(capture: Capture) -> Capture:
+    """The capture in which hands of one person that meet are things to touch as well: SELF objects.
+
+    That holds for hands with shapes that come together while neither has a mobile object at its
+    surface; those that hold or pass something meet by the way. Who declares one of the two hands
+    as an object has said which meetings are watched. Where the capture states a tolerance larger
+    than noise accounts for, its surfaces are off by so much that two hands beside each other would
+    meet: there they have to be declared.
+    """
+    limits = Thresholds()
+    tolerance_m = capture.contact_tolerance_m or limits.tolerance_most_m
+    if tolerance_m > limits.tolerance_most_m:
+        return capture
+    found: dict[str, Sensor] = {}
+    for one, other in _pairs(capture):
+        if _meet_free(capture, one, other, tolerance_m):
+            found |= {one.name: one, other.name: other}
+    if not found:
+        return capture
+    objects = tuple(
+        TagObject(each.name, TagType.SELF, each.stream, each.shape, HAND, agent=each.agent)
+        for each in found.values()
+    )
+    return replace(capture, objects=(*capture.objects, *objects))
+
+
+def _pairs(capture: Capture) -> Iterator[tuple[Sensor, Sensor]]:
+    """The two hands of each agent, where both have shapes and neither is an object already."""
+    objects = {each.name for each in capture.objects}
+    hands = [
+        each
+        for each in capture.acting
+        if each.end_effector == HAND and each.shape is not None and each.name not in objects
+    ]
+    for one, other in combinations(hands, 2):
+        if capture.agent_of(one) == capture.agent_of(other) and one.side != other.side:
+            yield one, other
+
+
+def _meet_free(capture: Capture, one: Sensor, other: Sensor, tolerance_m: float) -> bool:
+    """Whether two hands ever meet with nothing mobile at either."""
+    met = _near_any(capture.parts_of(one.name), [other], tolerance_m)
+    met |= _near_any(capture.parts_of(other.name), [one], tolerance_m)
+    if not met.any():
+        return False
+    hands = (*capture.parts_of(one.name), *capture.parts_of(other.name))
+    mobile = [each for each in capture.objects if each.tag is TagType.MOBILE]
+    busy = _near_any(hands, mobile, tolerance_m)
+    return any(not busy[first : last + 1].any() for first, last in runs(met))
+
+
+def _near_any(
+    some: Iterable[Sensor], others: Iterable[Sensor | TagObject], tolerance_m: float
+) -> Bool[np.ndarray, "frames"]:
+    """At which frames any of some bodies is at any of others; those without shapes are at none."""
+    some, others = list(some), list(others)
+    out = np.zeros(len(some[0].stream.times), dtype=bool)
+    for one in some:
+        for other in others:
+            if one.shape is not None and other.shape is not None:
+                first = body(surface(one.shape), one.stream, rests=False)
+                second = body(surface(other.shape), other.stream, rests=False)
+                out |= near(first, second, distance_m=tolerance_m)
+    return out
+
+
+def counted_meetings(
+    capture: Capture,
+    bodies: Bodies,
+    meetings: Iterable[tuple[str, str, Interval]],
+    thresholds: Thresholds,
+) -> Iterator[bool]:
+    """Whether each contact counts: one of two hands of an agent does not always.
+
+    It does not while either touches a mobile object, and it is not that of a hand that rests when
+    the other one comes to it.
+
+    Args:
+        capture: The trial.
+        bodies: Its bodies.
+        meetings: Contacts: who touches what, and when.
+        thresholds: What rest is measured by.
+    """
+    known = list(meetings)
+    hands = {each.name: each for each in capture.acting if each.end_effector == HAND}
+    mobile = {each.name for each in capture.objects if each.tag is TagType.MOBILE}
+    held = [(one, span) for one, other, span in known if one in hands and other in mobile]
+    for one, other, span in known:
+        own = one in hands and other in hands
+        if not own or capture.agent_of(hands[one]) != capture.agent_of(hands[other]):
+            yield True
+        elif any(name in (one, other) and _share(span, busy) for name, busy in held):
+            yield False
+        else:
+            waits = _rests(bodies, one, span[0], thresholds)
+            yield not (waits and not _rests(bodies, other, span[0], thresholds))
+
+
+def _share(one: Interval, other: Interval) -> bool:
+    return one[0] <= other[1] and other[0] <= one[1]
+
+
+def _rests(bodies: Bodies, hand: str, frame: int, thresholds: Thresholds) -> bool:
+    spans = resting(bodies.sensors[hand].poses, thresholds)
+    return any(first <= frame <= last for first, last in spans)
+
+
+ASIDE_S = 0.05
+"""How long before and after a contact the course of two bodies is taken [s].
+
+No threshold: it is the time over which the low-pass filter blurs what happens at once.
+"""
+
+
+def in_passing(
+    one: BodyGeometry, other: BodyGeometry, contact: Interval, thresholds: Thresholds
+) -> bool:
+    """Whether two bodies keep their course relative to each other through a brief contact.
+
+    A blow turns that course back or ends it, a grasp ends it, and what is pushed or struck away
+    takes it over. A hand that brushes past a thing goes on as before.
+
+    Args:
+        one: A body.
+        other: The other one.
+        contact: First and last frame of their contact.
+        thresholds: What is brief, what is fast, and how much of the course is kept.
+    """
+    first, last = contact
+    times = one.poses.smooth.times
+    if duration(contact, times, float(times[1] - times[0])) >= thresholds.passing_s:
+        return False
+    begin = int(np.searchsorted(times, times[first] - ASIDE_S - 1e-9))
+    end = int(np.searchsorted(times, times[last] + ASIDE_S - 1e-9))
+    if not 0 <= begin < first or not last < end < len(times):
+        return False
+    before = _course(one, other, (begin, first))
+    after = _course(one, other, (last, end))
+    pace = float(np.linalg.norm(before))
+    if not pace >= thresholds.passing_mps:
+        return False
+    return bool(before @ after >= thresholds.passing_share * pace**2)
+
+
+def _course(one: BodyGeometry, other: BodyGeometry, span: Interval) -> Float[np.ndarray, "3"]:
+    """Mean velocity of a body's middle relative to another's between two frames [m/s]."""
+    offsets = [one.middles[frame] - other.middles[frame] for frame in span]
+    times = one.poses.smooth.times
+    return np.asarray((offsets[1] - offsets[0]) / (times[span[1]] - times[span[0]]))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,17 +1,233 @@
-"""The direction in which two bodies press on each other where they touch."""
+"""Patches of surfaces in contact and their normals."""
 
 from collections import OrderedDict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
 from itertools import product
 from typing import TypeAlias
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
+from scipy.spatial import cKDTree
 
-from extractors.bodies.body_geometry import BodyGeometry
-from extractors.contact.patches import Box, facing_normal, meeting_box
+from extractors.bodies.bodies import BodyGeometry
 from extractors.contact.surfaces import Surface, surface
 from extractors.thresholds import Thresholds
+
+SPACING_M = 0.0025
+"""How far places on a surface are apart at least [m]: half of what skin gives way."""
+
+MANY_PLACES = 400
+"""So many places on the side of the box in which bodies meet are enough [1]."""
+
+MOST_STEPS = 256
+"""Into so many steps an edge is divided at most [1]: a table of more than a metre more coarsely."""
+
+BOX_DEPTHS = 3.0
+"""Places further from the other body's box than so many depths of a patch are left out [1]."""
+
+FEW_CELLS = 512
+"""A triangle in more cells is so large that most of it may lie outside of the box [1]."""
+
+SAMPLED = 16
+"""One place in so many says how near the surfaces are at least."""
+
+ROUNDED = 1e-9
+"""By this share bounds are wider than what is sought within them [1], as numbers are rounded."""
+
+LEAST_SHARE = 0.01
+"""Faces that cancel each other to less than this share of the patch's area press nowhere [1]."""
+
+Box = Float[np.ndarray, "2 3"]
+"""Lowest and highest corner [m]."""
+
+_Near = tuple[Int[np.ndarray, "near"], Int[np.ndarray, "near"]]
+"""Which places of a surface are near another one, and to which of its places each is nearest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Places spread over a surface, each with the unit normal and the area that it stands for."""
+
+    points: Float[np.ndarray, "places 3"]
+    normals: Float[np.ndarray, "places 3"]
+    areas: Float[np.ndarray, "places"]
+    outward: bool = True
+    """Whether normals point out of a solid; of an open sheet nobody knows."""
+
+
+def facing_normal(
+    body: Float[np.ndarray, "triangles 3 3"],
+    other: Float[np.ndarray, "others 3 3"],
+    *,
+    depth_m: float,
+    solid: tuple[bool, bool] = (True, True),
+    box: Box | None = None,
+) -> Float[np.ndarray, "3"] | None:
+    """The mean normal of the patch where two surfaces meet, from the other to the body.
+
+    Each place counts with its area, and as far as it faces the nearest place of the other
+    surface. None where nothing faces, or all sides alike: a peg in its hole.
+
+    Args:
+        body: Triangles [m], outward by their corners' order.
+        other: The same of the other body, in the same frame.
+        depth_m: The patch holds what is no further from the other surface than this beyond the
+            nearest of all [m].
+        solid: Whether either bounds a solid, so that its normals point outward.
+        box: Where they may meet; None for where the boxes of these triangles do.
+    """
+    if box is None:
+        box = meeting_box(body.reshape(-1, 3), other.reshape(-1, 3), depth_m=depth_m)
+    spacing_m = max(SPACING_M, _spacing(box))
+    one = places(body, box, spacing_m=spacing_m, outward=solid[0])
+    two = places(other, box, spacing_m=spacing_m, outward=solid[1])
+    if not len(one.points) or not len(two.points):
+        return None
+    near_one, near_two = _patch(one, two, max(depth_m, spacing_m))
+    total = _faced(two, one, *near_two) - _faced(one, two, *near_one)
+    length = float(np.linalg.norm(total))
+    area = float(one.areas[near_one[0]].sum() + two.areas[near_two[0]].sum())
+    return total / length if length > LEAST_SHARE * area else None
+
+
+def meeting_box(
+    body: Float[np.ndarray, "corners 3"], other: Float[np.ndarray, "others 3"], *, depth_m: float
+) -> Box:
+    """Where two bodies may have a patch so deep, by their corners in one frame [m]."""
+    low = np.maximum(body.min(axis=0), other.min(axis=0)) - BOX_DEPTHS * depth_m
+    high = np.minimum(body.max(axis=0), other.max(axis=0)) + BOX_DEPTHS * depth_m
+    return np.stack([low, high])
+
+
+def places(
+    triangles: Float[np.ndarray, "triangles 3 3"],
+    box: Box,
+    *,
+    spacing_m: float = SPACING_M,
+    outward: bool = True,
+) -> Places:
+    """Places on triangles [m] within a box, spread evenly over each."""
+    low, high = triangles.min(axis=1), triangles.max(axis=1)
+    some = _opposite_longest(triangles[((low <= box[1]) & (high >= box[0])).all(axis=1)])
+    one, two = some[:, 1] - some[:, 0], some[:, 2] - some[:, 0]
+    normal = np.cross(one, two)
+    length = np.linalg.norm(normal, axis=1)
+    steps = _steps(one, spacing_m) * (2 * MOST_STEPS) + _steps(two, spacing_m)
+    found = [(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0))]
+    for both in np.unique(steps).tolist():
+        along, across = divmod(both, 2 * MOST_STEPS)
+        rows = np.flatnonzero((steps == both) & (length > 0.0))
+        count = len(_spread(along, across)[0])
+        for group, u, v in _cells(some, rows, box, along, across):
+            points = some[group, None, 0] + u[:, None] * one[group, None]
+            points = points + v[:, None] * two[group, None]
+            inside = ((points >= box[0]) & (points <= box[1])).all(axis=2)
+            row = group[np.nonzero(inside)[0]]
+            found.append(
+                (points[inside], normal[row] / length[row, None], 0.5 * length[row] / count)
+            )
+    points, normals, areas = (np.concatenate(each) for each in zip(*found, strict=True))
+    return Places(points, normals, areas, outward)
+
+
+def _cells(
+    triangles: Float[np.ndarray, "triangles 3 3"],
+    rows: Int[np.ndarray, "rows"],
+    box: Box,
+    along: int,
+    across: int,
+) -> Iterator[tuple[Int[np.ndarray, "group"], np.ndarray, np.ndarray]]:
+    """Triangles with the shares of their edges at which places may lie in a box."""
+    u, v = _spread(along, across)
+    if len(u) <= FEW_CELLS:
+        yield rows, u, v
+        return
+    for row in rows:
+        corner, *ends = triangles[row]
+        edges = np.stack([end - corner for end in ends], axis=1)
+        shares = np.linalg.pinv(edges) @ (np.array(list(product(*box.T))) - corner).T
+        slack = ROUNDED * (1.0 + np.abs(shares).max())
+        low, high = shares.min(axis=1) - slack, shares.max(axis=1) + slack
+        some = (u >= low[0]) & (u <= high[0]) & (v >= low[1]) & (v <= high[1])
+        yield np.array([row]), u[some], v[some]
+
+
+def _opposite_longest(
+    triangles: Float[np.ndarray, "triangles 3 3"],
+) -> Float[np.ndarray, "triangles 3 3"]:
+    """Each triangle with the corner first that its longest edge does not touch."""
+    sides = np.linalg.norm(np.roll(triangles, -1, axis=1) - triangles, axis=2)
+    order = (sides.argmax(axis=1)[:, None] + np.array([2, 0, 1])) % 3
+    return np.take_along_axis(triangles, order[:, :, None], axis=1)
+
+
+def _steps(edges: Float[np.ndarray, "edges 3"], spacing_m: float) -> np.ndarray:
+    """Into how many steps each edge is divided [1]: a power of two, so that few differ."""
+    ratio = np.linalg.norm(edges, axis=1) / spacing_m
+    return np.clip(2 ** np.ceil(np.log2(np.maximum(ratio, 1.0))), 1, MOST_STEPS).astype(int)
+
+
+@lru_cache(maxsize=128)
+def _spread(along: int, across: int) -> tuple[np.ndarray, np.ndarray]:
+    """Shares of two edges at even places of a triangle: the thirds of each cell's two halves."""
+    grid = np.mgrid[0:along, 0:across].reshape(2, -1)
+    both = np.concatenate([grid + 1.0 / 3.0, grid + 2.0 / 3.0], axis=1)
+    u, v = both[0] / along, both[1] / across
+    inside = u + v < 1.0
+    return u[inside], v[inside]
+
+
+def _spacing(box: Box) -> float:
+    """How far places may be apart so that there are not too many [m]."""
+    sides = np.sort(np.maximum(box[1] - box[0], 0.0))
+    return float(np.sqrt(sides[1] * sides[2] / MANY_PLACES))
+
+
+def _patch(one: Places, two: Places, depth_m: float) -> tuple[_Near, _Near]:
+    """What of either surface is near the other one, and to which place of it."""
+    tree = _tree(two)
+    some = tree.query(one.points[::SAMPLED])[0]
+    bound = (float(some.min()) + depth_m) * (1.0 + ROUNDED)
+    far_one, to_two = tree.query(one.points, distance_upper_bound=bound)
+    # The nearest pair is the same from either side.
+    reach = float(far_one.min()) + depth_m
+    far_two, to_one = _tree(one).query(two.points, distance_upper_bound=bound)
+    near_one, near_two = np.flatnonzero(far_one <= reach), np.flatnonzero(far_two <= reach)
+    return (near_one, to_two[near_one]), (near_two, to_one[near_two])
+
+
+def _tree(of: Places) -> cKDTree:
+    """A search tree that is built faster than it could be searched, for few points ask it."""
+    return cKDTree(of.points, balanced_tree=False, compact_nodes=False)
+
+
+def _faced(
+    own: Places, others: Places, some: Int[np.ndarray, "near"], nearest: Int[np.ndarray, "near"]
+) -> Float[np.ndarray, "3"]:
+    """The sum of a patch's normals by area, as far as each faces the nearest of the others.
+
+    Of an open sheet nobody knows which side is out: there what faces it looks towards it.
+
+    Args:
+        own: Places of a surface.
+        others: Those of the other one.
+        some: Which of its own are near the other surface.
+        nearest: To which of the others each of those is nearest.
+    """
+    if not own.outward:
+        return np.zeros(3)
+    normals = own.normals[some]
+    faces = -np.einsum("ij,ij->i", normals, others.normals[nearest])
+    if others.outward:
+        faces = np.maximum(faces, 0.0)
+    else:
+        ahead = np.einsum("ij,ij->i", normals, others.points[nearest] - own.points[some])
+        faces = np.where(ahead >= -SPACING_M, np.abs(faces), 0.0)
+    return np.asarray((own.areas[some] * faces) @ normals)
+
 
 SLACK_M = 1e-6
 """By so much the box is larger in which triangles are sought, since turning it rounds [m]."""

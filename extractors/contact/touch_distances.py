@@ -1,22 +1,297 @@
-"""At which distance bodies touch of which one has no surface, estimated from the recording."""
+"""The distance within which bodies without meshes touch, estimated from co-motion and rest."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
 import trimesh
 from jaxtyping import Bool, Float
+from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
+from capar.model import geometry
 from capar.model.calibration import Found, PairCalibration
-from capar.model.capture import Capture, Role, Shape, ShapeSource, TagType
-from extractors.bodies.bodies import Bodies
-from extractors.bodies.body_geometry import BodyGeometry
+from capar.model.capture import Capture, Role, Shape, ShapeSource, Stream, TagType
+from extractors.bodies.bodies import Bodies, BodyGeometry
+from extractors.bodies.poses import rotation_matrices
 from extractors.contact.proximity import Body, at_frame, body, distance
 from extractors.contact.surfaces import Surface, surface
-from extractors.contact.touch_evidence import HAND, Evidence
-from extractors.contact.touch_points import TouchPoints, touch_points
+from extractors.motion.object_motion import motion_floor, rest_poses, resting
+from extractors.signals.intervals import frame_rate, mask
 from extractors.thresholds import Thresholds
+
+Points = Float[np.ndarray, "frames 3"]
+
+
+def travelling(stream: Stream, thresholds: Thresholds) -> Bool[np.ndarray, "frames"]:
+    """Where a body covers some way in the world within the window of co-motion."""
+    return spread(stream.positions, stream, thresholds) >= thresholds.co_motion_way_m
+
+
+def steady_in(carrier: Stream, thing: Stream, thresholds: Thresholds) -> Bool[np.ndarray, "frames"]:
+    """Where a thing covers some way in the world and stays where it is in a carrier's frame.
+
+    Or the carrier stays where it is in the thing's frame, as a hand does that takes a large thing
+    by its rim and tips it: its origin, far from the hand, then strays in the hand's frame. Steady
+    means that it strays there by no more than a centimetre, or by no more than a share of
+    its way through the world, within the window of co-motion.
+
+    Only where it travels, and half a window about, are its places in the other's frame asked for.
+    """
+    way = spread(thing.positions, thing, thresholds)
+    out = np.zeros(len(way), dtype=bool)
+    reach = _half_window(thing, thresholds)
+    with np.errstate(invalid="ignore"):
+        travels = np.asarray(way >= thresholds.co_motion_way_m)
+    for begin, end in geometry.runs(_widened(travels, reach)):
+        some = slice(begin, end + 1)
+        places = in_either_frame(carrier, thing, some)
+        stray = np.minimum(*(spread(each, thing, thresholds) for each in places))
+        limit = np.maximum(thresholds.co_motion_stray_m, thresholds.co_motion_share * way[some])
+        with np.errstate(invalid="ignore"):
+            out[some] = travels[some] & (stray <= limit)
+    return out
+
+
+def in_either_frame(one: Stream, other: Stream, some: slice) -> tuple[Points, Points]:
+    """The origin of each of two bodies in the other's frame [m], at some frames."""
+    return relative(one, other, some), relative(other, one, some)
+
+
+def relative(frame_of: Stream, thing: Stream, some: slice) -> Points:
+    """A body's origin in another's frame [m] at some frames; NaN where either is lost."""
+    turns = rotation_matrices(frame_of.orientations[some])
+    offset = thing.positions[some] - frame_of.positions[some]
+    return np.asarray(np.einsum("fji,fj->fi", turns, offset))
+
+
+def spread(points: Points, stream: Stream, thresholds: Thresholds) -> Float[np.ndarray, "frames"]:
+    """Diagonal of the box that points cover within the window around each frame [m].
+
+    It is NaN where one of them is not known.
+    """
+    size = 2 * _half_window(stream, thresholds) + 1
+    lost = np.isnan(points).any(axis=1)
+    known = np.where(lost[:, None], 0.0, points)
+    high = maximum_filter1d(known, size, axis=0, mode="nearest")
+    low = minimum_filter1d(known, size, axis=0, mode="nearest")
+    out = np.linalg.norm(high - low, axis=1)
+    unknown = maximum_filter1d(lost.astype(np.uint8), size, mode="nearest").astype(bool)
+    return np.where(unknown, np.nan, out)
+
+
+def _half_window(stream: Stream, thresholds: Thresholds) -> int:
+    """Frames of the window of co-motion to either side [1]."""
+    return max(1, round(0.5 * thresholds.co_motion_window_s * frame_rate(stream.times)))
+
+
+def _widened(holds: Bool[np.ndarray, "frames"], reach: int) -> Bool[np.ndarray, "frames"]:
+    """Where something holds at a frame no further away than so many."""
+    wide = maximum_filter1d(holds.view(np.uint8), 2 * reach + 1, mode="nearest")
+    return np.asarray(wide.astype(bool))
+
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class TouchPoints:
+    """A point of each body, in its own frame [m]; they coincide where the bodies touch."""
+
+    first: Vector = (0.0, 0.0, 0.0)
+    second: Vector = (0.0, 0.0, 0.0)
+
+    def apart(self, first: Stream, second: Stream) -> Float[np.ndarray, "frames"]:
+        """Distance of the two points [m]; NaN where either body is lost."""
+        return np.asarray(np.linalg.norm(_at(first, self.first) - _at(second, self.second), axis=1))
+
+
+def touch_points(
+    first: Stream, second: Stream, frames: Bool[np.ndarray, "frames"], thresholds: Thresholds
+) -> TouchPoints:
+    """The points that stay nearest to each other through some frames, by least squares.
+
+    Another origin of a body's stream moves its point by the same offset the other way, so the
+    distance of the points hardly depends on where on its body a marker cluster sits.
+    """
+    turns = (
+        rotation_matrices(first.orientations[frames]),
+        rotation_matrices(second.orientations[frames]),
+    )
+    rows = np.concatenate([turns[0], -turns[1]], axis=2)
+    offset = second.positions[frames] - first.positions[frames]
+    normal = np.einsum("fij,fik->jk", rows, rows) / len(rows) + thresholds.touch_ridge * np.eye(6)
+    right = np.einsum("fij,fi->j", rows, offset) / len(rows)
+    found = [float(value) for value in np.linalg.solve(normal, right)]
+    return TouchPoints((found[0], found[1], found[2]), (found[3], found[4], found[5]))
+
+
+def _at(stream: Stream, point: Vector) -> Float[np.ndarray, "frames 3"]:
+    return np.asarray(stream.positions + rotation_matrices(stream.orientations) @ np.array(point))
+
+
+HAND = "hand"
+"""The end-effector that takes hold of things it does not move."""
+
+Frames = Bool[np.ndarray, "frames"]
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """What the bodies of a capture do to each other, as far as it tells who touches whom."""
+
+    capture: Capture
+    bodies: Bodies
+    thresholds: Thresholds
+
+    @cached_property
+    def carried(self) -> dict[tuple[str, str], Frames]:
+        """By end-effector and mobile object, where it surely carries the object."""
+        out = {}
+        for thing in self._mobile:
+            ways = travelling(thing.poses.settled, self.thresholds)
+            least = self.thresholds.co_motion_least * max(int(ways.sum()), 1)
+            for sensor in self.capture.acting:
+                carrier = self.bodies.sensors[sensor.name]
+                if carrier.poses is thing.poses:
+                    continue
+                frames = steady_in(carrier.poses.settled, thing.poses.settled, self.thresholds)
+                if frames.sum() > least and self._lasts(frames):
+                    out[sensor.name, thing.name] = frames
+        return out
+
+    @cached_property
+    def gripped(self) -> dict[tuple[str, str], Frames]:
+        """The same, with the frames before and after in which their distance is no other."""
+        return {
+            (hand, thing): self._nearby(hand, thing, frames)
+            for (hand, thing), frames in self.carried.items()
+        }
+
+    def held(self, thing: str) -> Frames:
+        """Where some end-effector surely holds a thing."""
+        return self._any(frames for (_, name), frames in self.gripped.items() if name == thing)
+
+    def busy(self, hand: str) -> Frames:
+        """Where an end-effector surely holds something."""
+        return self._any(frames for (name, _), frames in self.gripped.items() if name == hand)
+
+    def unheld_rest(self, thing: str) -> Frames:
+        """Where a thing rests and nobody surely holds it."""
+        return self._at_rest(thing) & ~self.held(thing)
+
+    def settled(self, hand: str) -> dict[str, Frames]:
+        """By object, where a hand without load rests by it and by no nearer one.
+
+        The rests with which a recording begins and ends are the person's posture, not contact.
+        """
+        own = self.bodies.sensors[hand]
+        last = len(self.capture.times) - 1
+        spans = resting(own.poses, self.thresholds)
+        home = mask([each for each in spans if each[0] == 0 or each[1] == last], last + 1)
+        free = mask([each for each in spans if each[0] > 0 and each[1] < last], last + 1)
+        known = {thing for name, thing in self.gripped if name == hand}
+        others = [each for each in self._mobile if each.name not in known and each.name != hand]
+        return self._nearest(own, free & ~self.busy(hand), home, others)
+
+    def dwelling(self, thing: str) -> dict[str, Frames]:
+        """By object, where a held thing dwells by it and by no nearer one."""
+        own = self.bodies.objects[thing]
+        apart = self.unheld_rest(thing)
+        dwells = self._dwells(own) & self.held(thing) & ~self._laid_down(thing)
+        others = [each for each in self._mobile if each.name != thing]
+        return self._nearest(own, dwells, apart, others)
+
+    def _nearest(
+        self, own: BodyGeometry, frames: Frames, apart: Frames, others: list[BodyGeometry]
+    ) -> dict[str, Frames]:
+        """By object that rests by itself, where it is the nearest, if nearer than when apart."""
+        gaps: dict[str, Float[np.ndarray, "frames"]] = {}
+        for other in others:
+            gap = _origins_apart(own, other)
+            limit = self.thresholds.settle_reach_m
+            if apart.any():
+                usual = float(np.nanmedian(gap[apart]))
+                limit = min(limit, usual - self.thresholds.settle_nearer_m)
+            there = (
+                frames & self.unheld_rest(other.name) & (np.nan_to_num(gap, nan=np.inf) <= limit)
+            )
+            gaps[other.name] = np.where(there, gap, np.inf)
+        if not gaps:
+            return {}
+        least = np.min(list(gaps.values()), axis=0)
+        found = {name: np.isfinite(gap) & (gap == least) for name, gap in gaps.items()}
+        return {name: each for name, each in found.items() if self._lasts(each)}
+
+    def _nearby(self, hand: str, thing: str, frames: Frames) -> Frames:
+        one, two = self.bodies.sensors[hand].poses.settled, self.bodies.objects[thing].poses.settled
+        apart = touch_points(one, two, frames, self.thresholds).apart(one, two)
+        limit = float(np.quantile(apart[frames], self.thresholds.touch_quantile))
+        with np.errstate(invalid="ignore"):
+            return np.asarray(apart <= limit + self.thresholds.touch_margin_m)
+
+    def _dwells(self, own: BodyGeometry) -> Frames:
+        """Where the mean place over the time of dwelling hardly moves within that time."""
+        stream = own.poses.settled
+        size = max(1, round(self.thresholds.dwell_s * frame_rate(stream.times)))
+        known = ~stream.lost[:, None]
+        sums = uniform_filter1d(np.where(known, stream.positions, 0.0), size, axis=0)
+        count = uniform_filter1d(known.astype(float), size, axis=0)
+        means = np.where(known, sums / np.maximum(count, 1.0 / size), np.nan)
+        way = spread(means, stream, self.thresholds)
+        with np.errstate(invalid="ignore"):
+            return np.asarray(way <= self.thresholds.dwell_m)
+
+    def _laid_down(self, thing: str) -> Frames:
+        """Where a thing is at a place at which it also rests while nobody holds it."""
+        unheld = self.unheld_rest(thing)
+        spans = [(a, z) for a, z in self._rests(thing) if unheld[a : z + 1].any()]
+        return mask(spans, len(self.capture.times))
+
+    def _at_rest(self, thing: str) -> Frames:
+        return mask(self._rests(thing), len(self.capture.times))
+
+    def _rests(self, thing: str) -> list[tuple[int, int]]:
+        body, last = self.bodies.objects[thing], len(self.capture.times) - 1
+        own = self.capture.tag_object(thing)
+        if own.tag is TagType.FIXED or body.poses.still:
+            return [(0, last)]
+        floor = motion_floor(
+            body.poses.noise,
+            frame_rate(self.capture.times),
+            own_m=own.motion_floor_m,
+            thresholds=self.thresholds,
+        )
+        return [each.interval for each in rest_poses(body.poses, floor, self.thresholds)]
+
+    @cached_property
+    def _mobile(self) -> list[BodyGeometry]:
+        return [each for each in self._things if self._tag(each.name) is TagType.MOBILE]
+
+    @cached_property
+    def _things(self) -> list[BodyGeometry]:
+        things = (each for each in self.capture.objects if each.tag is not TagType.SELF)
+        return [self.bodies.objects[each.name] for each in things]
+
+    def _tag(self, thing: str) -> TagType:
+        return self.capture.tag_object(thing).tag
+
+    def _lasts(self, frames: Frames) -> bool:
+        step_s = 1.0 / frame_rate(self.capture.times)
+        return bool(frames.sum() * step_s >= self.thresholds.rest_minimum_s)
+
+    def _any(self, masks: Iterable[Frames]) -> Frames:
+        out = np.zeros(len(self.capture.times), dtype=bool)
+        for frames in masks:
+            out |= frames
+        return out
+
+
+def _origins_apart(one: BodyGeometry, other: BodyGeometry) -> Float[np.ndarray, "frames"]:
+    offset = one.poses.settled.positions - other.poses.settled.positions
+    return np.asarray(np.linalg.norm(offset, axis=1))
+
 
 SAMPLES = 100
 """In how many frames at most distances to a surface are measured for an estimate."""
@@ -197,3 +472,16 @@ _SPECK = _speck()
 
 _TOUCHABLE: WeakKeyDictionary[BodyGeometry, Body] = WeakKeyDictionary()
 """Of bodies that were asked for before: each is in many pairs."""
+
+
+def touching_part(bodies: Bodies, ee: str, other: BodyGeometry, frame: int) -> BodyGeometry:
+    """The part of an end-effector that is nearest to a body at a frame; of equals the first.
+
+    Its own body, where no part is known and has a shape at that frame.
+    """
+    parts = bodies.on_end_effector(ee)
+    known = [each for each in parts if each.shape is not None and not each.poses.lost[frame]]
+    if len(parts) == 1 or not known or other.poses.lost[frame]:
+        return parts[0]
+    there = touchable_at(other, frame)
+    return min(known, key=lambda each: distance(touchable_at(each, frame), there, 0))

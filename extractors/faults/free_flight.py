@@ -13,11 +13,10 @@ from jaxtyping import Bool, Float
 from scipy.ndimage import correlate1d
 
 from capar.model import geometry
-from extractors.bodies.body_geometry import BodyGeometry
+from extractors.bodies.bodies import BodyGeometry
 from extractors.motion.impacts import recorded_middles
-from extractors.signals.clock import time_step
 from extractors.signals.filters import JITTER
-from extractors.signals.intervals import Interval
+from extractors.signals.intervals import Interval, time_step
 from extractors.thresholds import Thresholds
 
 WINDOWS = (9, 13, 17, 25, 33, 49, 65)

@@ -17,7 +17,7 @@ from jaxtyping import Bool, Float
 from capar.model.capture import Stream
 from capar.model.notices import Notice, notice
 from extractors.bodies.poses import rotation_matrices
-from extractors.signals.clock import frame_rate
+from extractors.signals.intervals import frame_rate
 from extractors.thresholds import Thresholds
 
 SAMPLES = 16

@@ -10,8 +10,7 @@ from jaxtyping import Bool, Float
 from capar.model import geometry
 from capar.model.capture import Capture, Conventions, TagType
 from capar.model.notices import Notice, notice
-from extractors.bodies.bodies import Bodies
-from extractors.bodies.body_geometry import BodyGeometry
+from extractors.bodies.bodies import Bodies, BodyGeometry
 from extractors.contact.contacts import Contact
 from extractors.signals.intervals import Interval, mask
 from extractors.thresholds import Thresholds

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from extractors.bodies.body_geometry import BodyGeometry
+from extractors.bodies.bodies import BodyGeometry
 from extractors.bodies.poses import rotation_matrices
 from extractors.signals.filters import speed, velocity
 from extractors.signals.intervals import Interval, intervals

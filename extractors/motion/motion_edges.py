@@ -1,20 +1,338 @@
-"""When a motion truly begins and ends, within the floor that separates motion from rest."""
+"""True edges of motion: when a body set off and came to rest, and where it was seated."""
 
 from collections.abc import Collection
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from capar.model import geometry
-from extractors.bodies.poses import Poses, median_pose
+from capar.model.capture import Stream
+from extractors.bodies.bodies import BodyGeometry
+from extractors.bodies.poses import Poses, median_pose, rotation_matrices
 from extractors.motion.object_motion import Floor, RestPose, rests_at
-from extractors.motion.onsets import onset
-from extractors.motion.ways import way_out
-from extractors.signals.clock import frame_rate
 from extractors.signals.filters import gains
-from extractors.signals.intervals import Interval, first_where, last_where
+from extractors.signals.intervals import Interval, first_where, frame_rate, last_where
 from extractors.thresholds import Thresholds
+
+Ways = Float[np.ndarray, "frames"]
+
+STROKES_S = tuple(0.15 * 40.0 ** (step / 11.0) for step in range(12))
+"""Durations of smooth strokes (minimum jerk; Flash and Hogan 1985) that are tried [s]: from the
+least duration of a rest to 6 s; longer ones begin alike."""
+
+USUAL_S, RATIO = 1.0, 2.5
+"""Most strokes of people's arms last for this [s], or up to so many times more or less [1]: a place
+of rest is reached in half a second, a bowl is emptied in two."""
+
+CANDIDATES = 24
+"""How many beginnings are tried at once [1], then about the likely ones."""
+
+_SPREAD = np.linspace(0.0, 1.0, CANDIDATES // 2) ** 2
+"""Where they lie between when a motion is first seen and the limits [1]: the farther, the wider."""
+
+ABOUT = 3.0
+"""How many deviations about the likely beginning the next ones are tried [1]."""
+
+STRAY = 0.1
+"""Share of itself by which a displacement strays from any profile [1]: people move less smoothly
+than a formula. So small displacements tell of the beginning, as far as noise lets them."""
+
+QUIET = 0.05
+"""Noise is taken for at least this share of the unit [1]: what is recorded without any drifts."""
+
+UNEXPLAINED = 9.0
+"""What no profile explains is taken for at most so many times the variance of noise [1]: then it is
+followed back for a third of the longest time."""
+
+_STROKE = np.exp(-0.5 * (np.log(np.array(STROKES_S) / USUAL_S) / np.log(RATIO)) ** 2)
+_PRIOR = np.concatenate([[1.0], _STROKE * len(STROKES_S) / _STROKE.sum()])
+"""How likely each profile is beforehand [1]: a steady speed is one among all strokes."""
+
+FEWEST_FRAMES = 4
+"""Fewer frames tell nothing of how a displacement grew [1]."""
+
+
+def onset(
+    way: Ways,
+    smooth: Ways,
+    seen: int,
+    *,
+    noise: Ways,
+    place: float,
+    most: int,
+    rest: int,
+    rate_hz: float,
+) -> int:
+    """The frame at which a displacement began to grow from nothing.
+
+    Args:
+        way: The displacement along one direction, from a place of rest to where it is well beyond,
+            in units of what is seen of it [1]; NaN where it was lost.
+        smooth: The same, low-passed.
+        seen: The frame at which it is first seen to have left the place.
+        noise: Deviation of each displacement that is not low-passed [1].
+        place: Deviation of the place from where it was taken to be [1].
+        most: How many frames before it is seen it began at most.
+        rest: How many frames are looked at before that.
+        rate_hz: Frames a second [Hz].
+    """
+    lost = np.isnan(way)
+    before, after = np.flatnonzero(lost[:seen]), np.flatnonzero(lost[seen:])
+    start = max(seen - most - rest, int(before[-1]) + 1 if before.size else 0)
+    stop = seen + int(after[0]) if after.size else len(way)
+    if stop <= seen or stop - start < FEWEST_FRAMES:
+        return seen
+    times = (np.arange(start, stop) - seen) / rate_hz
+    told = weights(smooth[start:stop], noise[start:stop])
+    earliest_s = max(float(times[0]), -most / rate_hz)
+    track = Growth(way[start:stop], times, told, place)
+    begin_s = beginning_s(track, earliest_s, float(times[-1]))
+    return seen + round(begin_s * rate_hz)
+
+
+def weights(smooth: Ways, noise: Ways) -> Ways:
+    """How much each displacement tells of the beginning: its inverse variance [1]."""
+    return np.asarray(1.0 / (np.maximum(noise, QUIET) ** 2 + (STRAY * smooth) ** 2))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Growth:
+    """A displacement along one direction, from a place on, and how well it is known."""
+
+    way: Ways
+    """How far it is from the place [1]."""
+
+    times: Ways
+    """When [s]; it is first seen at 0."""
+
+    told: Ways
+    """How much each frame tells (``weights``)."""
+
+    place: float
+    """Deviation of the place from where it was taken to be [1]."""
+
+    def product(
+        self, one: Float[np.ndarray, "*some frames"], other: Float[np.ndarray, "*some frames"]
+    ) -> Float[np.ndarray, "*some"]:
+        """Inner product of displacements, weighted by what each frame tells.
+
+        All are from one place: an error of it is common to all frames, so that the inverse of their
+        covariance has a second term (Sherman and Morrison 1950).
+        """
+        common = self.place**2 / (1.0 + self.place**2 * self.told.sum())
+        return np.asarray(
+            (one * other) @ self.told - common * (one @ self.told) * (other @ self.told)
+        )
+
+
+def beginning_s(track: Growth, earliest_s: float, latest_s: float) -> float:
+    """When a displacement began to grow from nothing [s]: the mean over all that may explain it.
+
+    Each beginning is tried with each profile: at once, by a steady speed, or smoothly, by a stroke
+    of some duration. The size of a profile is the one that fits best (weighted least squares). What
+    it leaves tells how likely it is, if noise is normal; beforehand all beginnings are as likely,
+    and strokes by how long they last (Bayesian model averaging; Hoeting, Madigan, Raftery and
+    Volinsky 1999). The mean moves little when noise, or a frame more or less, changes which one is
+    the likeliest. The farther the way is from every profile, as that of what wobbles is, the less
+    far back it is followed: by as many times less as what is left is larger than noise (reduced
+    chi-squared).
+
+    Args:
+        track: The displacement, from the place before on.
+        earliest_s: No earlier than this, which is not after 0.
+        latest_s: No later than this, which is not before 0.
+    """
+    if earliest_s >= latest_s:
+        return latest_s
+    tries = np.unique(np.concatenate([earliest_s * _SPREAD, latest_s * _SPREAD]))
+    left = float(_misfit(track, tries).min()) / len(track.way)
+    earliest_s /= float(np.sqrt(np.clip(left, 1.0, UNEXPLAINED)))
+    tries = np.unique(np.concatenate([earliest_s * _SPREAD, latest_s * _SPREAD]))
+    mean_s, spread_s = _mean(track, tries)
+    half_s = ABOUT * spread_s + float(np.interp(mean_s, tries, np.gradient(tries)))
+    tries = np.linspace(
+        max(mean_s - half_s, earliest_s), min(mean_s + half_s, latest_s), CANDIDATES
+    )
+    return _mean(track, tries)[0]
+
+
+def _mean(track: Growth, tries: Float[np.ndarray, "tries"]) -> tuple[float, float]:
+    """The mean of some beginnings by how likely they are, and their deviation from it [s]."""
+    misfit = _misfit(track, tries)
+    likely = _PRIOR @ np.exp(-0.5 * (misfit - misfit.min())) * np.gradient(tries)
+    likely /= likely.sum()
+    mean_s = float(likely @ tries)
+    return mean_s, float(np.sqrt(likely @ (tries - mean_s) ** 2))
+
+
+def _misfit(
+    track: Growth, tries: Float[np.ndarray, "tries"]
+) -> Float[np.ndarray, "profiles tries"]:
+    """The weighted sum of squares that each profile leaves, from each beginning."""
+    since = np.maximum(track.times[None, :] - tries[:, None], 0.0)
+    paces = np.array([1.0 / stroke_s for stroke_s in STROKES_S])
+    profiles = np.concatenate([since[None], _stroke(since[None] * paces[:, None, None])])
+    power = track.product(profiles, profiles)
+    shared = np.maximum(track.product(profiles, track.way), 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        explained = np.where(power > 0.0, shared**2 / power, 0.0)
+    return np.asarray(track.product(track.way, track.way) - explained)
+
+
+def _stroke(shares: Float[np.ndarray, "*some"]) -> Float[np.ndarray, "*some"]:
+    """Way done of a stroke of least jerk, from 0 to 1, after a share of its time."""
+    part = np.minimum(shares, 1.0)
+    return np.asarray(part * part * part * (10.0 + part * (6.0 * part - 15.0)))
+
+
+AS_ONE = 2.0
+"""Poses of two that move as one differ by so many deviations of what noise the filter leaves [1];
+the more they differ beyond that, the less the one tells of the other."""
+
+REFINED = 2
+"""How often it is estimated how the one sits on the other [1]: from the motion, then from all
+frames in which the two agree with that."""
+
+Frames = Int[np.ndarray, "frames"]
+Places = Float[np.ndarray, "frames 3"]
+Turns = Float[np.ndarray, "frames 4"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Direction:
+    """Where a body goes to, or about what it turns, from a place."""
+
+    stay: RestPose
+    to: Float[np.ndarray, "3"]
+    """Direction in the world, in units of displacement [1/m or 1/rad]."""
+
+    turns: bool
+    """Whether it is an axis that the body turns about."""
+
+    def along(self, places: Places, turns: Turns) -> Ways:
+        """Displacement along it at each pose [1]; NaN where the pose is unknown."""
+        return np.asarray(
+            (_turned(turns, self.stay) if self.turns else places - self.stay.position) @ self.to
+        )
+
+    def noise(self, poses: Poses, lever_m: float = 0.0) -> float:
+        """Deviation along it [1] of a body as recorded, or of a point so far from its origin."""
+        noise = poses.noise
+        goes = float(np.hypot(noise.position_m, lever_m * noise.orientation_rad))
+        along = noise.orientation_rad if self.turns else goes
+        return max(float(np.linalg.norm(self.to)) * along, QUIET)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mount:
+    """How a body sits on another one that it moves with."""
+
+    lever: Float[np.ndarray, "3"]
+    """Its origin in the frame of the other [m]."""
+
+    turn: Float[np.ndarray, "4"]
+    """Its orientation in that frame, a unit quaternion w x y z."""
+
+    def carried(self, stream: Stream, frames: Frames) -> tuple[Places, Turns]:
+        """Its poses by those of the other."""
+        turns = stream.orientations[frames]
+        places = stream.positions[frames] + rotation_matrices(turns) @ self.lever
+        return places, geometry.products(turns, self.turn[None])
+
+
+def way_out(
+    poses: Poses,
+    partners: Collection[Poses],
+    frames: Frames,
+    seen: int,
+    stay: RestPose,
+    unit: Floor,
+    left: float,
+) -> tuple[Ways, Ways, Ways]:
+    """How far a body goes toward its last pose, or turns, whichever is clearer.
+
+    Where a hand holds a thing the pose of the thing follows from the hand's, whose sensor has noise
+    of its own: the mean of both, weighted by inverse variances, has less noise than either. What
+    the two differ by beyond noise, as while the hand still comes near, adds to the variance of what
+    the hand tells.
+
+    Args:
+        poses: The body's poses.
+        partners: Those of what may move as one with it.
+        frames: From the place to where it is well beyond it.
+        seen: Index of the one at which it is first seen to have left the place.
+        stay: The place.
+        unit: The unit of displacement.
+        left: What the filter leaves of a deviation of noise [1].
+
+    Returns:
+        Displacement as recorded and low-passed, and the deviation of each recorded one [1].
+    """
+    ahead = _direction(poses, int(frames[-1]), stay, unit)
+    way, smooth = (ahead.along(*_at(stream, frames)) for stream in (poses.filled, poses.smooth))
+    own = ahead.noise(poses)
+    told = np.full(len(frames), own**-2)
+    total = told * way
+    for partner in partners:
+        held = np.arange(len(frames)) >= seen
+        for _ in range(REFINED):
+            mount = _mount(poses, partner, frames, held.astype(float))
+            its = ahead.noise(partner, float(np.linalg.norm(mount.lever)))
+            calm = ahead.along(*mount.carried(partner.smooth, frames))
+            differ = (smooth - calm) ** 2 - (AS_ONE * left) ** 2 * (own**2 + its**2)
+            held = its**2 / (its**2 + np.maximum(differ, 0.0))
+        raw = ahead.along(*mount.carried(partner.filled, frames))
+        known = ~np.isnan(raw * held)
+        total[known] += (raw * held)[known] / its**2
+        told[known] += held[known] / its**2
+    return total / told, smooth, np.asarray(told**-0.5)
+
+
+def _at(stream: Stream, frames: Frames) -> tuple[Places, Turns]:
+    return stream.positions[frames], stream.orientations[frames]
+
+
+def _direction(poses: Poses, last: int, stay: RestPose, unit: Floor) -> Direction:
+    """Where a body goes to until a frame, or about what it turns."""
+    places, turns = _at(poses.smooth, np.array([last]))
+    way, turn = places[0] - stay.position, _turned(turns, stay)[0]
+    goes = np.linalg.norm(way) / unit.position_m >= np.linalg.norm(turn) / unit.rotation_rad
+    to, one = (way, unit.position_m) if goes else (turn, unit.rotation_rad)
+    return Direction(stay, to / (np.linalg.norm(to) * one), not goes)
+
+
+def _mount(body: Poses, other: Poses, frames: Frames, held: Ways) -> Mount:
+    """How a body sits on another one, in the mean over frames by how much it is held in each.
+
+    It is NaN where it is never known.
+    """
+    places, turns = _at(body.smooth, frames)
+    origins, bearings = _at(other.smooth, frames)
+    known = ~np.isnan(places[:, 0] + origins[:, 0]) & (held > 0.0)
+    if not known.any():
+        return Mount(np.full(3, np.nan), np.full(4, np.nan))
+    offsets = (places - origins)[known, None, :] @ rotation_matrices(bearings[known])
+    within = geometry.products(_inverse(bearings[known]), turns[known])
+    turn = held[known] @ within
+    lever = np.average(offsets[:, 0], axis=0, weights=held[known])
+    return Mount(lever, turn / np.linalg.norm(turn))
+
+
+def _inverse(turns: Turns) -> Turns:
+    return turns * np.array([1.0, -1.0, -1.0, -1.0])
+
+
+def _turned(orientations: Turns, stay: RestPose) -> Places:
+    """Rotation vectors from the orientation of a place [rad]; NaN where the body is lost."""
+    turn = geometry.products(orientations, _inverse(stay.orientation[None]))
+    turn = np.where(turn[:, :1] < 0.0, -turn, turn)
+    sine = np.linalg.norm(turn[:, 1:], axis=1, keepdims=True)
+    angle = 2.0 * np.arctan2(sine, turn[:, :1])
+    # As the angle vanishes, the vector is twice the quaternion's.
+    return np.asarray(turn[:, 1:] * np.where(sine > 0.0, angle / np.maximum(sine, 1e-300), 2.0))
+
 
 GROWN = 8.0
 """How many times as far as it can first be seen a motion is looked at again [1].
@@ -227,3 +545,130 @@ def hair(poses: Poses, thresholds: Thresholds) -> Floor:
         max(thresholds.edge_m, left * poses.noise.position_m),
         max(thresholds.edge_rad, left * poses.noise.orientation_rad),
     )
+
+
+REACHES = 3
+"""How far beyond a contact a height is followed, in the longest times until it is seen [1]."""
+
+POWERS = (1.0, 3.0)
+"""With which power of time a displacement grows [1]: at once, by a steady push, smoothly."""
+
+AGREEMENT = 0.1
+"""A beginning is sure if both estimates of how long ago it was differ by no larger share [1]."""
+
+UNSURE = 1.0 / 3.0
+"""Share of the longest time by which a motion may have begun earlier if that is not sure [1]: what
+drifts, or is recorded at few frames, grows with no power of time."""
+
+LEAST = 0.01
+"""A displacement is taken for at least this [1], since less is noise."""
+
+
+def seat(
+    body: BodyGeometry,
+    other: BodyGeometry,
+    contact: Interval,
+    motions: Collection[Interval],
+    thresholds: Thresholds,
+) -> Interval:
+    """The closed interval within a contact in which the body is down on the other.
+
+    Bodies touch within a tolerance, so that a contact begins before the body has come down and
+    lasts after it has risen. It is down until it begins to rise to where the contact ends: until
+    its lowest point was last no more than a hair above its level before that, as far back as it was
+    no higher than a hair above the lowest; and likewise at the beginning. What rises as soon as it
+    has come down is down where it was lowest.
+
+    Args:
+        body: What lies on the other.
+        other: What bears it.
+        contact: First and last frame of their contact.
+        motions: When either of them moves; at rest nothing comes down or leaves.
+        thresholds: What a hair is.
+    """
+    first, last = contact
+    height = body.boxes[0][:, 2] - other.middles[:, 2]
+    near = hair(body.poses, thresholds)
+    most = longest(body.poses, near, thresholds)
+    least = near.position_m
+    lies = max(1, round(thresholds.rest_begins_s * frame_rate(body.poses.filled.times)))
+    begin = first + _settled(height[first : last + 1], height[:first][::-1], least, most, lies)
+    end = last - _settled(height[first : last + 1][::-1], height[last + 1 :], least, most, lies)
+    coming = max((m[1] for m in motions if m[0] <= first <= m[1]), default=first)
+    going = min((m[0] for m in motions if m[0] <= last <= m[1]), default=last)
+    begin, end = min(begin, coming), max(end, going)
+    if begin <= end:
+        return begin, end
+    # It rose as soon as it had come down.
+    lowest = end + int(np.nanargmin(height[end : begin + 1]))
+    return lowest, lowest
+
+
+def _settled(
+    height: Float[np.ndarray, "frames"],
+    outside: Float[np.ndarray, "others"],
+    least: float,
+    most: int,
+    lies: int,
+) -> int:
+    """How many frames pass before it is down, from the first on, as far as it was not lost.
+
+    It is down where it first is for so many frames (``lies``) no more than a hair above its lowest,
+    or for as long as the contact lasts: the level is that of these frames, however long it lies.
+
+    People stop smoothly: the height over what bears it shrinks with the cube of time (minimum jerk;
+    Flash and Hogan 1985), so it comes down later than it passes a hair's width, by at most so many
+    frames. Where noise makes a hair as wide as the tolerance of contact, the height is followed
+    beyond the contact.
+    """
+    lost = np.flatnonzero(np.isnan(height))
+    height = height[: lost[0]] if lost.size else height
+    if not height.size:
+        return 0
+    lowest = np.minimum.accumulate(height)
+    higher = np.flatnonzero(height > lowest + least)
+    end = int(higher[0]) if higher.size else len(height)
+    since = np.searchsorted(-lowest, -(lowest + least))
+    long = np.flatnonzero(np.arange(len(height)) - since >= lies - 1)
+    end = min(end, int(long[0]) + 1) if long.size else end
+    down = np.flatnonzero(height[:end] <= lowest[end - 1] + least)[0]
+    level = float(np.median(height[down:end]))
+    passed = int(np.flatnonzero(height[:end] <= level + least)[0])
+    way = np.concatenate([height[: passed + 1][::-1], outside[: REACHES * most]])
+    later = before_seen((way - level) / least, GROWN, most)
+    return min(passed + later, end - 1)
+
+
+def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> int:
+    """How many frames before it is 1 a displacement that grows with a power of time was none.
+
+    The power is the one of ``POWERS`` that agrees best with when it was half as large, in powers
+    of ten, as in the end.
+
+    Args:
+        grows: The displacement, from where it is about 1 on.
+        reach: How large it should have grown for this to be told [1]; less if it never is.
+        most: The answer at most.
+    """
+    if not grows.size or np.isnan(grows[0]):
+        return 0
+    large = np.flatnonzero(grows >= reach)
+    far = int(large[0]) if large.size else int(np.nanargmax(grows))
+    begin, end = max(float(grows[0]), LEAST), float(grows[far])
+    if end <= begin:
+        return 0
+    middle = float(np.sqrt(begin * end))
+    half = int(np.flatnonzero(grows[: far + 1] >= middle)[0])
+    tries = [
+        (_lasted(begin, end, far, power), _lasted(begin, middle, half, power)) for power in POWERS
+    ]
+    whole, part = min(tries, key=lambda both: abs(1.0 - both[1] / both[0]))
+    if abs(1.0 - part / whole) > AGREEMENT:
+        most = round(most * UNSURE)
+    return min(round(whole), most)
+
+
+def _lasted(begin: float, end: float, frames: int, power: float) -> float:
+    """How many frames it took to ``begin`` if it then takes so many to ``end``."""
+    first, last = begin ** (1.0 / power), end ** (1.0 / power)
+    return frames * first / (last - first)

@@ -1,4 +1,4 @@
-"""When an object is away from each place where it rests (thesis 4.4.1)."""
+"""When objects move and when they rest."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -13,10 +13,15 @@ from scipy.ndimage import correlate1d
 from capar.model import geometry
 from capar.model.capture import Stream
 from extractors.bodies.poses import Poses, median_pose
-from extractors.signals.clock import frame_rate
-from extractors.signals.filters import gains
-from extractors.signals.intervals import Interval, first_where, intervals, last_where, mask
-from extractors.signals.noise import Noise
+from extractors.signals.filters import Noise, gains
+from extractors.signals.intervals import (
+    Interval,
+    first_where,
+    frame_rate,
+    intervals,
+    last_where,
+    mask,
+)
 from extractors.thresholds import Thresholds
 
 
@@ -313,3 +318,25 @@ def _moved(stream: Stream, first: int, last: int, floor: Floor) -> bool:
     return way > floor.position_m or bool(
         geometry.angle_between(turns[:1], turns[1:])[0] > floor.rotation_rad
     )
+
+
+def resting(poses: Poses, thresholds: Thresholds) -> tuple[Interval, ...]:
+    """Closed intervals of frames from the first to the last slow one at a place of rest.
+
+    A body that stirs a little within the floor of motion of its place rests on; its last
+    millimetres of settling and its first of leaving are motion.
+    """
+    stream = poses.smooth
+    rate_hz = frame_rate(stream.times)
+    floor = motion_floor(poses.noise, rate_hz, own_m=None, thresholds=thresholds)
+    calm = slow_frames(stream, poses.noise, rate_hz, thresholds)
+    found: list[Interval] = []
+    for rest in rest_poses(poses, floor, thresholds):
+        first, last = rest.interval
+        inside = first + np.flatnonzero(calm[first : last + 1])
+        if inside.size:
+            span = int(inside[0]), int(inside[-1])
+            if found and span[0] <= found[-1][1] + 1:
+                span = found.pop()[0], span[1]
+            found.append(span)
+    return tuple(found)

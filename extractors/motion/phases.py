@@ -1,17 +1,20 @@
-"""Phases of an object's motion: rising, level, sinking, turning or still, by its path."""
+"""Phases of a motion: rising, level, sinking, turning, rolling, leaning, reversing, lengthwise."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
+from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
-from extractors.bodies.body_geometry import BodyGeometry
-from extractors.motion.object_motion import slopes
-from extractors.signals.clock import frame_rate
-from extractors.signals.intervals import Interval
+from capar.model.capture import Stream
+from extractors.bodies.bodies import BodyGeometry
+from extractors.bodies.poses import Poses, rotation_matrices
+from extractors.motion.object_motion import RestPose, slopes
+from extractors.signals.filters import derivative, velocity
+from extractors.signals.intervals import Interval, frame_rate, intervals
 from extractors.thresholds import Thresholds
 
 RISING, LEVEL, SINKING, TURNING, STILL = "rising", "level", "sinking", "turning", "still"
@@ -200,3 +203,371 @@ def _give_up(out: list[Phase], place: int) -> None:
     else:
         out[place - 1] = Phase(out[place - 1].kind, out[place - 1].first, middle)
         out[place] = Phase(out[place].kind, middle, out[place].last)
+
+
+def rolling(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:
+    """Closed intervals of frames in which a body rolls, as on a level through its lowest point.
+
+    The material point straight below its middle, at the height of its lowest point, has the
+    velocity v + w x r. Where the body rolls without slipping that point is at rest while the
+    middle goes. Nothing here knows whether there is a support at that height; on a slope of more
+    than about fifteen degrees the point of contact lies too far uphill for it to be this one.
+
+    Args:
+        body: The body; one without a shape has no lowest point and never rolls.
+        thresholds: Least speed and turn, largest slip, and least durations.
+    """
+    if body.poses.rests or body.shape is None:
+        return ()
+    stream = body.poses.smooth
+    goes = velocity(body.middles, stream.times)
+    turns = angular_velocity(stream.orientations, stream.times)
+    arm = np.zeros_like(goes)
+    arm[:, 2] = body.boxes[0][:, 2] - body.middles[:, 2]
+    found = intervals(
+        _holds(goes, turns, arm, thresholds),
+        stream.times,
+        dropout_s=thresholds.dropout_s,
+        minimum_s=thresholds.contact_minimum_s,
+    )
+    angle = _turned(turns, stream.times)
+    return tuple(
+        (first, last) for first, last in found if angle[last] - angle[first] >= thresholds.roll_rad
+    )
+
+
+def angular_velocity(
+    orientations: Float[np.ndarray, "frames 4"], times: Float[np.ndarray, "frames"]
+) -> Float[np.ndarray, "frames 3"]:
+    """Angular velocity in the world by central differences [rad/s]; NaN beside lost frames."""
+    before = np.maximum(np.arange(len(times)) - 1, 0)
+    after = np.minimum(np.arange(len(times)) + 1, len(times) - 1)
+    lost = np.isnan(orientations[before, 0]) | np.isnan(orientations[after, 0])
+    known = np.where(np.isnan(orientations), 0.5, orientations)
+    rotation = Rotation.from_quat(known, scalar_first=True)
+    out = (rotation[after] * rotation[before].inv()).as_rotvec()
+    out /= (times[after] - times[before])[:, None]
+    out[lost] = np.nan
+    return np.asarray(out)
+
+
+def _holds(
+    goes: Float[np.ndarray, "frames 3"],
+    turns: Float[np.ndarray, "frames 3"],
+    arm: Float[np.ndarray, "frames 3"],
+    thresholds: Thresholds,
+) -> Bool[np.ndarray, "frames"]:
+    """Whether the middle goes, the axis lies, and the point below the middle stays behind."""
+    speed = np.linalg.norm(goes, axis=1)
+    slip = np.linalg.norm(goes + np.cross(turns, arm), axis=1)
+    level = np.linalg.norm(turns[:, :2], axis=1)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(
+            (speed > thresholds.rest_speed_mps)
+            & (slip <= thresholds.slip_share * speed)
+            & (np.abs(turns[:, 2]) <= level)
+        )
+
+
+def _turned(
+    turns: Float[np.ndarray, "frames 3"], times: Float[np.ndarray, "frames"]
+) -> Float[np.ndarray, "frames"]:
+    """Angle turned so far [rad]; what is not known adds nothing."""
+    rate = np.nan_to_num(np.linalg.norm(turns, axis=1))
+    steps = 0.5 * (rate[1:] + rate[:-1]) * np.diff(times)
+    return np.concatenate(([0.0], np.cumsum(steps)))
+
+
+def leaning(
+    poses: Poses,
+    upright: Float[np.ndarray, "3"],
+    thresholds: Thresholds,
+    *,
+    length_m: float = 0.0,
+) -> tuple[Interval, ...]:
+    """Closed intervals of frames in which an object leans, from when it began to lean over.
+
+    It leans while its axis is far from the vertical. The interval also covers the tipping over
+    before and the righting after, as long as it turns faster than a body at rest does, and turns
+    rather than travels: its middle goes no farther meanwhile than its turning moves one end about
+    the other.
+
+    Args:
+        poses: The object's poses.
+        upright: The axis that points up while it stands, in its own frame.
+        thresholds: The angle, and least durations.
+        length_m: The object's greatest length [m]; a point's turning moves nothing.
+    """
+    stream = poses.smooth
+    angle = lean(stream.orientations, upright)
+    pace = derivative(angle, stream.times)
+    speed = np.linalg.norm(derivative(stream.positions, stream.times), axis=1)
+    with np.errstate(invalid="ignore"):
+        far = angle > thresholds.lean_rad
+        over, back = pace >= thresholds.rest_speed_radps, pace <= -thresholds.rest_speed_radps
+    reach = np.abs(pace) * length_m
+    lapse = round(thresholds.dropout_s * frame_rate(stream.times))
+    found: list[Interval] = []
+    for first, last in intervals(
+        far,
+        stream.times,
+        dropout_s=thresholds.dropout_s,
+        minimum_s=thresholds.contact_minimum_s,
+    ):
+        before, after = slice(first - 1, None, -1) if first else slice(0, 0), slice(last + 1, None)
+        begin = first - _run(over[before] & _turns(speed[before], reach[before]), lapse)
+        end = last + _run(back[after] & _turns(speed[after], reach[after]), lapse)
+        if found and begin <= found[-1][1]:
+            begin = found[-1][1] + 1
+        found.append((begin, end))
+    return tuple(found)
+
+
+def _turns(
+    speed: Float[np.ndarray, "frames"], reach: Float[np.ndarray, "frames"]
+) -> Bool[np.ndarray, "frames"]:
+    """Up to which frames it has come no farther than its turning takes it; not where it is lost."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.cumsum(speed) <= np.cumsum(reach))
+
+
+def _run(holds: Bool[np.ndarray, "frames"], lapse: int) -> int:
+    """For how many frames from the first on it holds, but for lapses of fewer frames than so many.
+
+    Noise makes such lapses in what is told by a rate of change.
+    """
+    known = np.flatnonzero(holds)
+    ends = np.flatnonzero(np.diff(known, prepend=-1) > lapse)
+    known = known[: ends[0]] if ends.size else known
+    return int(known[-1]) + 1 if known.size else 0
+
+
+def upright_axis(poses: Poses, rest: RestPose | None) -> Float[np.ndarray, "3"]:
+    """The axis that points up where a body first rests, or else in its first known frame."""
+    known = np.flatnonzero(~poses.smooth.lost)
+    up = np.array([0.0, 0.0, 1.0])
+    if rest is not None:
+        turn = rest.orientation
+    elif known.size:
+        turn = poses.smooth.orientations[known[0]]
+    else:
+        return up
+    return np.asarray(rotation_matrices(turn[None])[0].T @ up)
+
+
+def lean(
+    orientations: Float[np.ndarray, "frames 4"], upright: Float[np.ndarray, "3"]
+) -> Float[np.ndarray, "frames"]:
+    """Angle of an axis of the body from the vertical at each frame [rad]."""
+    up = (rotation_matrices(orientations) @ upright)[:, 2]
+    return np.arccos(np.clip(up, -1.0, 1.0))
+
+
+def spin_steps(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "steps"]:
+    """Angle by which a body turns about the vertical from each frame to the next [rad].
+
+    It is the twist of the step's rotation; lost frames add nothing.
+    """
+    (w0, x0, y0, z0), (w1, x1, y1, z1) = orientations[:-1].T, orientations[1:].T
+    # The step's quaternion: the later orientation times the inverse of the earlier one.
+    w = w1 * w0 + x1 * x0 + y1 * y0 + z1 * z0
+    x = -w1 * x0 + x1 * w0 - y1 * z0 + z1 * y0
+    y = -w1 * y0 + x1 * z0 + y1 * w0 - z1 * x0
+    z = -w1 * z0 - x1 * y0 + y1 * x0 + z1 * w0
+    length = np.sqrt(x * x + y * y + z * z)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        angle = 2.0 * np.arctan2(length, np.abs(w)) * np.where(w < 0.0, -1.0, 1.0)
+        steps = np.where(length > 0.0, angle * z / length, 0.0)
+    lost = np.isnan(orientations[:, 0])
+    steps[lost[1:] | lost[:-1]] = 0.0
+    return np.asarray(steps)
+
+
+def lengthwise(
+    body: BodyGeometry, swinging: Iterable[Interval], thresholds: Thresholds
+) -> tuple[Interval, ...]:
+    """Those of the stretches in which a body goes along its own length rather than across.
+
+    Args:
+        body: The body; one that is not long and thin, or has no shape, goes along nothing.
+        swinging: Closed intervals of frames in which it moves to and fro.
+        thresholds: How long is long, and which share of its path is along.
+    """
+    axis = long_axis(body, thresholds)
+    if axis is None:
+        return ()
+    least = thresholds.lengthwise_share
+    return tuple(span for span in swinging if _share_along(body, axis, span) >= least)
+
+
+def long_axis(body: BodyGeometry, thresholds: Thresholds) -> Float[np.ndarray, "3"] | None:
+    """The unit axis of a long, thin body in its own frame; None for any other body.
+
+    The axis is the principal one of its outermost points; its length along the axis is so many
+    times the largest distance across that two of the points have.
+    """
+    points = body.corners - body.corners.mean(axis=0)
+    if len(points) < 2:
+        return None
+    axes = np.linalg.svd(points, full_matrices=False)[2]
+    along = points @ axes[0]
+    across = points - np.outer(along, axes[0])
+    wide = np.linalg.norm(across[:, None] - across[None], axis=2).max()
+    return axes[0] if np.ptp(along) >= thresholds.slender_ratio * wide else None
+
+
+def _share_along(body: BodyGeometry, axis: Float[np.ndarray, "3"], span: Interval) -> float:
+    """Which share of its origin's path is along its own axis [1]; lost frames count nothing."""
+    part = slice(span[0], span[1] + 1)
+    steps = np.diff(body.poses.smooth.positions[part], axis=0)
+    lengths = (body.turns_at(part) @ axis)[:-1]
+    way = np.nansum(np.linalg.norm(steps, axis=1))
+    along = np.nansum(np.abs(np.einsum("ij,ij->i", steps, lengths)))
+    return float(along / way) if way > 0.0 else 0.0
+
+
+def turning_points(values: Float[np.ndarray, "frames"], least: float) -> Int[np.ndarray, "turns"]:
+    """Frames of extrema that lie at least so far from the extremum before and the one after.
+
+    Args:
+        values: A coordinate over time, known throughout.
+        least: The least way between neighbouring extrema, in the coordinate's unit.
+    """
+    found: list[int] = []
+    low = high = direction = 0
+    for frame, value in enumerate(values):
+        if direction >= 0 and value > values[high]:
+            high = frame
+        if direction <= 0 and value < values[low]:
+            low = frame
+        if direction >= 0 and values[high] - value >= least:
+            found += [high] if direction else []
+            direction, low = -1, frame
+        elif direction <= 0 and value - values[low] >= least:
+            found += [low] if direction else []
+            direction, high = 1, frame
+    return np.array(found, dtype=np.int64)
+
+
+def level_turns(
+    middles: Float[np.ndarray, "frames 3"],
+    motions: Iterable[Interval],
+    thresholds: Thresholds,
+) -> tuple[int, ...]:
+    """Frames at which a body turns back on the level, after a real way and before another one.
+
+    Args:
+        middles: The middles of the body [m]; a motion in which it is lost is left out.
+        motions: When it moves, as closed intervals of frames.
+        thresholds: The least way, and what is level.
+    """
+    found: list[int] = []
+    for first, last in motions:
+        part = middles[first : last + 1]
+        if np.isnan(part).any() or len(part) < 2:
+            continue
+        offsets = part - part.mean(axis=0)
+        axis = np.linalg.svd(offsets, full_matrices=False)[2][0]
+        if abs(axis[2]) < thresholds.steep:
+            found += [
+                first + int(at) for at in turning_points(offsets @ axis, thresholds.reversal_m)
+            ]
+    return tuple(found)
+
+
+def swings(
+    poses: Poses, moving: tuple[Interval, ...], thresholds: Thresholds
+) -> tuple[Interval, ...]:
+    """Closed intervals of frames in which a body moves to and fro along an axis of the world.
+
+    To and fro is a chain of turning points, each soon after the one before, whose strokes add up
+    to more than the way from the first to the last: what bobs as it is carried along does not
+    swing. Several axes that swing at a time are one swinging. It begins and ends with the motion
+    itself, if that is soon before or after and no further than one stroke.
+    """
+    stream = poses.smooth
+    chains: list[Interval] = []
+    for first, last in _known(stream, moving):
+        part = stream.positions[first : last + 1]
+        for axis in range(3):
+            turns = first + turning_points(part[:, axis], thresholds.swing_m)
+            for chain in _chains(turns, stream.times, thresholds):
+                if _outweighs(chain, stream, axis):
+                    chains.append(_whole(chain, (first, last), stream, axis, thresholds))
+    out: list[Interval] = []
+    for first, last in sorted(chains):
+        if out and first <= out[-1][1]:
+            out[-1] = (out[-1][0], max(last, out[-1][1]))
+        else:
+            out.append((first, last))
+    return tuple(out)
+
+
+def most_turns(
+    stream: Stream, span: Interval, thresholds: Thresholds
+) -> tuple[int, Int[np.ndarray, "turns"]]:
+    """The axis of the world along which a body turns back most between two frames, and where.
+
+    Args:
+        stream: The body's poses; where it is lost it is taken to go straight on.
+        span: First and last frame.
+        thresholds: The least way between turning points.
+
+    Returns:
+        The number of the axis, and the frames of its turning points.
+    """
+    first, last = span
+    part = stream.positions[first : last + 1]
+    known = np.flatnonzero(~stream.lost[first : last + 1])
+    if not known.size:
+        return 0, np.array([], dtype=np.int64)
+    every = np.arange(len(part))
+    paths = [np.interp(every, known, part[known, axis]) for axis in range(3)]
+    found = [first + turning_points(path, thresholds.swing_m) for path in paths]
+    axis = max(range(3), key=lambda one: (len(found[one]), float(np.ptp(paths[one]))))
+    return axis, found[axis]
+
+
+def _known(stream: Stream, moving: tuple[Interval, ...]) -> Iterator[Interval]:
+    """The parts of the motions in which the body was not lost."""
+    for first, last in moving:
+        for begin, end in geometry.runs(~stream.lost[first : last + 1]):
+            yield first + begin, first + end
+
+
+def _chains(
+    turns: Int[np.ndarray, "turns"], times: Float[np.ndarray, "frames"], thresholds: Thresholds
+) -> list[Int[np.ndarray, "turns"]]:
+    if not len(turns):
+        return []
+    breaks = np.flatnonzero(np.diff(times[turns]) > thresholds.swing_s) + 1
+    groups = np.split(turns, breaks)
+    return [each for each in groups if len(each) >= thresholds.swing_turns]
+
+
+def _outweighs(turns: Int[np.ndarray, "turns"], stream: Stream, axis: int) -> bool:
+    """Whether the strokes add up to more than the way from the first turn to the last."""
+    way = np.linalg.norm(stream.positions[turns[-1]] - stream.positions[turns[0]])
+    return bool(np.abs(np.diff(stream.positions[turns, axis])).sum() > way)
+
+
+def _whole(
+    turns: Int[np.ndarray, "turns"],
+    moving: Interval,
+    stream: Stream,
+    axis: int,
+    thresholds: Thresholds,
+) -> Interval:
+    """Between its first and last turning point, or the rest that is no more than a stroke away."""
+    stroke = np.abs(np.diff(stream.positions[turns, axis])).max()
+
+    def near(edge: int, turn: int) -> bool:
+        way = np.linalg.norm(stream.positions[edge] - stream.positions[turn])
+        soon = abs(stream.times[edge] - stream.times[turn]) <= thresholds.swing_s
+        return bool(soon and way <= stroke)
+
+    first, last = int(turns[0]), int(turns[-1])
+    return (
+        moving[0] if near(moving[0], first) else first,
+        moving[1] if near(moving[1], last) else last,
+    )

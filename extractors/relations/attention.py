@@ -11,9 +11,8 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from capar.model.capture import Capture, Sensor
-from extractors.bodies.bodies import Bodies
+from extractors.bodies.bodies import TRUNK, Bodies
 from extractors.bodies.poses import Poses, rotation_matrices
-from extractors.bodies.trunk import TRUNK
 from extractors.contact.surfaces import Surface, surface
 from extractors.signals.intervals import Interval, intervals
 from extractors.thresholds import Thresholds

@@ -1,10 +1,6 @@
-"""Zero-phase low-pass filtering of sampled motion, and what it leaves of white noise.
+"""Filters of motion with finite support, noise at rest, and gaps that are bridged."""
 
-The filter is a Butterworth low-pass run forward and backward, cut off where its response has
-decayed to nothing: a weighted mean of the frames about each one. What is farther away than half
-its length has no part in a frame, so a part of a recording is filtered as the whole is.
-"""
-
+from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil
 
@@ -13,7 +9,8 @@ from jaxtyping import Bool, Float
 from scipy.ndimage import correlate1d
 
 from capar.model import geometry
-from extractors.signals.clock import time_step
+from capar.model.capture import Stream
+from extractors.signals.intervals import frame_rate, time_step
 from extractors.thresholds import Thresholds
 
 ORDER = 2
@@ -187,3 +184,91 @@ def _weighted(
     held = ((half - reach, half - reach), (0, 0))
     extended = np.pad(np.concatenate([before, values, after]), held, mode="edge")
     return np.asarray(correlate1d(extended, weights, axis=0)[half : len(extended) - half])
+
+
+CHI_SQUARE = 2.366
+"""Median of the squared length of a normal vector in space, in variances of one axis [1]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Deviations of a stream's pose from where the body truly was."""
+
+    position_m: float
+    """Standard deviation of one coordinate [m]."""
+
+    orientation_rad: float
+    """Standard deviation of the rotation about one axis [rad]."""
+
+
+def noise_at_rest(stream: Stream, thresholds: Thresholds) -> Noise:
+    """The stream's noise, robustly, from what the low-pass takes away.
+
+    What is faster than the cutoff is noise whether the body rests or moves; its median size,
+    over the share of white noise that lies above the cutoff, gives the whole. Stretches of
+    quick motion or loose tracking count no more than any other outlier.
+    """
+    _, _, taken = gains(frame_rate(stream.times), thresholds)
+    place = _deviation(stream.positions, stream, thresholds)
+    # A small rotation changes the quaternion by half of its angle, along three directions.
+    turn = 2.0 * _deviation(stream.orientations, stream, thresholds)
+    return Noise(place / taken, turn / taken)
+
+
+def _deviation(
+    values: Float[np.ndarray, "frames axes"], stream: Stream, thresholds: Thresholds
+) -> float:
+    rest = (values - lowpass(values, stream.times, thresholds))[~stream.lost]
+    return float(np.sqrt(np.median((rest**2).sum(axis=1)) / CHI_SQUARE)) if len(rest) else 0.0
+
+
+DEGREE = 3
+"""Positions in a gap lie on a polynomial of this degree [1] (spec 3: cubic)."""
+
+
+def fill_gaps(stream: Stream, *, gap_s: float) -> Stream:
+    """The stream with each loss shorter than ``gap_s`` [s] filled.
+
+    Positions lie on the cubic that fits, by least squares, as many known frames on each side as
+    the gap has (two at least), so that noise beside a gap is not thrown across it; it is exact
+    for cubic motion. Orientations turn along great arcs. Losses at the ends stay lost.
+    """
+    short = [each for each in geometry.runs(stream.lost) if _inside(stream, each, gap_s)]
+    if not short:
+        return stream
+    positions, orientations = stream.positions.copy(), stream.orientations.copy()
+    for first, last in short:
+        gap = slice(first, last + 1)
+        positions[gap] = _cubic(stream, first, last)
+        ends = [first - 1, last + 1]
+        orientations[gap] = geometry.slerp(
+            stream.times[ends], stream.orientations[ends], stream.times[gap]
+        )
+    return Stream(stream.times, positions, orientations)
+
+
+def long_gaps(stream: Stream, *, gap_s: float) -> list[tuple[int, int]]:
+    """Losses that are not filled, as closed intervals of frames."""
+    return [each for each in geometry.runs(stream.lost) if not _inside(stream, each, gap_s)]
+
+
+def _inside(stream: Stream, gap: tuple[int, int], gap_s: float) -> bool:
+    first, last = gap
+    if first == 0 or last == len(stream.times) - 1:
+        return False
+    lasts_s = stream.times[last + 1] - stream.times[first - 1] - time_step(stream.times)
+    return bool(lasts_s < gap_s - 1e-9)
+
+
+def _cubic(stream: Stream, first: int, last: int) -> Float[np.ndarray, "gap 3"]:
+    reach = max(2, last - first + 1)
+    near = np.r_[max(0, first - reach) : first, last + 1 : last + 1 + reach]
+    near = near[near < len(stream.times)]
+    near = near[~stream.lost[near]]
+    middle = 0.5 * (stream.times[first] + stream.times[last])
+    scale = stream.times[last + 1] - stream.times[first - 1]
+    degree = min(DEGREE, len(near) - 1)
+    known = np.vander((stream.times[near] - middle) / scale, degree + 1)
+    wanted = np.vander((stream.times[first : last + 1] - middle) / scale, degree + 1)
+    factors, *_ = np.linalg.lstsq(known, stream.positions[near], rcond=None)
+    return np.asarray(wanted @ factors)

@@ -11,9 +11,8 @@ from jaxtyping import Bool, Float, Int
 from scipy.ndimage import minimum_filter1d
 
 from capar.model import geometry
-from extractors.signals.clock import frame_rate, time_step
 from extractors.signals.filters import gains
-from extractors.signals.intervals import duration, intervals
+from extractors.signals.intervals import duration, frame_rate, intervals, time_step
 from extractors.thresholds import Thresholds
 
 

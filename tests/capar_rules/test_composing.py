@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from capar.model.par import LinkSteps, Step
-from capar_rules.pars.complex_pars import _relations, allen
+from capar_rules.pars.pars import _relations, allen
 
 INVERSE = {
     "meets": "metBy", "starts": "startedBy", "finishes": "finishedBy", "during": "contains",

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from capar.model.facts import Fact, FlickerCorrection, Frames, Link, RateMhz, Resting, Tag, Touching
 from capar_rules.borders.deflicker import steady
-from capar_rules.borders.times import times
+from capar_rules.borders.ticks import times
 
 RATE_HZ = 20
 FLICKER = 3

@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from capar.model.facts import Resting, Touching
+from capar_rules.borders.border_numbers import undisturbed
 from capar_rules.borders.ticks import Undisturbed
-from capar_rules.borders.undisturbed_rest import undisturbed
 
 SPANS = st.lists(
     st.tuples(st.integers(0, 60), st.integers(0, 20)).map(lambda each: (each[0], sum(each))),

@@ -2,7 +2,7 @@
 
 import pytest
 
-from capar_rules.engine.search import worlds
+from capar_rules.engine.solver import worlds
 from capar_rules.engine.syntax import parse_text
 from capar_rules.explain.numbered import NUMBERS, Numbering
 

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from capar.model.facts import Touching
-from capar_rules.borders.shared_contacts import by_object, overlapping, shared
+from capar_rules.borders.border_numbers import by_object, overlapping, shared
 from capar_rules.borders.ticks import Meanwhile, Shares
 
 FRAMES = 200

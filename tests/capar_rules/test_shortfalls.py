@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from capar_rules.borders.times import constants
+from capar_rules.borders.ticks import constants
 from capar_rules.explain import quantities
 
 MM = st.integers(-3000, 3000)

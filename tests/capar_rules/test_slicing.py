@@ -4,9 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from capar_rules.engine.search import brave
-from capar_rules.engine.slicing import asked_for, firing
-from capar_rules.engine.syntax import Signature, parse_text
+from capar_rules.engine.solver import brave
+from capar_rules.engine.syntax import Signature, asked_for, firing, parse_text
 
 RULES = parse_text(
     """

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from capar.model.errors import RuleError
-from capar_rules.borders.times import in_frames, times
+from capar_rules.borders.ticks import in_frames, times
 from capar_rules.engine.solver import rule_file
 
 PROCESS_LIMITS = {"lint/checker_process.py", "lint/checker_client.py"}

@@ -15,7 +15,7 @@ from capar.pipelines.explanation import explained
 from capar.pipelines.observation import observe
 from capar_rules.engine.profiles import profile
 from extractors.measure import measure
-from extractors.relations.weight_bearing import share_of_first
+from extractors.relations.support import share_of_first
 from extractors.thresholds import Thresholds
 from kb.actionary import Actionary
 

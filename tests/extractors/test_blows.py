@@ -7,7 +7,7 @@ from measured_bodies import box, stream
 
 from capar.model.capture import Capture, Sensor, TagObject, TagType
 from capar.model.facts import Touching
-from extractors.bodies.body_geometry import BodyGeometry, geometry_of
+from extractors.bodies.bodies import BodyGeometry, geometry_of
 from extractors.contact.blows import blow, set_going
 from extractors.measure import measure
 from extractors.motion.impacts import closing_speed, release_speed

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from extractors.signals.clock import frame_rate, time_step
+from extractors.signals.intervals import frame_rate, time_step
 
 
 def test_a_clock_that_changes_has_the_step_of_its_present_values() -> None:

@@ -3,8 +3,13 @@
 import numpy as np
 import pytest
 
-from extractors.forces.blow_velocities import restitution, thesis_damping, velocities_about
-from extractors.forces.estimating import Fit, fit_free_motion
+from extractors.forces.forces import (
+    Fit,
+    fit_free_motion,
+    restitution,
+    thesis_damping,
+    velocities_about,
+)
 from extractors.forces.free_motion import Resistance, Surface, free_motion
 
 RATE_HZ = 103.3

@@ -7,8 +7,8 @@ from measured_bodies import ball, box, eased, hand, stream
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import TagObject, TagType
-from extractors.bodies.body_geometry import geometry_of
-from extractors.relations.grips import shifts
+from extractors.bodies.bodies import geometry_of
+from extractors.relations.arrangement import shifts
 from extractors.signals.intervals import Interval
 from extractors.thresholds import Thresholds
 

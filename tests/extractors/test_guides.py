@@ -23,12 +23,10 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Shape, Stream, TagObject, TagType
 from capar.pipelines.observation import observe
-from extractors.bodies.body_geometry import BodyGeometry, geometry_of
+from extractors.bodies.bodies import BodyGeometry, geometry_of
 from extractors.measure import measure
-from extractors.motion.guide_fitting import fit_hinge, fit_rail
 from extractors.motion.object_motion import Floor
-from extractors.relations.guide_places import inside_share
-from extractors.relations.guides import guide_of
+from extractors.relations.guides import fit_hinge, fit_rail, guide_of, inside_share
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

@@ -12,14 +12,19 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Shape, Stream, TagObject, TagType
 from capar.model.facts import SweptAzimuth
-from extractors.bodies.body_geometry import BodyGeometry, geometry_of
+from extractors.bodies.bodies import BodyGeometry, geometry_of
 from extractors.contact.normals import contact_normal
 from extractors.motion.impacts import closing_speed, falls
-from extractors.motion.leaning import leaning, spin_steps
 from extractors.motion.motion_edges import motion_edges
-from extractors.motion.object_motion import Floor, moving, rest_poses
-from extractors.motion.rest import resting
-from extractors.motion.turning_points import level_turns, most_turns, swings, turning_points
+from extractors.motion.object_motion import Floor, moving, rest_poses, resting
+from extractors.motion.phases import (
+    leaning,
+    level_turns,
+    most_turns,
+    spin_steps,
+    swings,
+    turning_points,
+)
 from extractors.relations.arrangement import (
     Pair,
     above,

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from extractors.contact.triangle_intersection import meeting_point, meeting_points
+from extractors.contact.surfaces import meeting_point, meeting_points
 
 
 @given(seed=st.integers(0, 2**32 - 1), scale=st.floats(1e-3, 1e3))

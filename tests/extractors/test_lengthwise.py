@@ -9,9 +9,9 @@ from measured_bodies import box, cup, shape, stream
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Shape, TagObject, TagType
-from extractors.bodies.body_geometry import BodyGeometry, geometry_of
-from extractors.motion.lengthwise import lengthwise, long_axis
-from extractors.relations.rooms import pocket_m
+from extractors.bodies.bodies import BodyGeometry, geometry_of
+from extractors.motion.phases import lengthwise, long_axis
+from extractors.relations.places import pocket_m
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

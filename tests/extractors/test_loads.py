@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from measured_bodies import ball, box, eased, shape, still, stream
 
 from capar.model.capture import Shape, TagObject, TagType
-from extractors.bodies.body_geometry import BodyGeometry, geometry_of
-from extractors.relations.loads import rides
+from extractors.bodies.bodies import BodyGeometry, geometry_of
+from extractors.relations.support import rides
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

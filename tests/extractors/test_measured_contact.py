@@ -17,12 +17,9 @@ from capar.model.capture import Shape, Stream
 from capar.pipelines.trials import trial_of
 from extractors.bodies.bodies import bodies_of
 from extractors.calibration import calibrate
-from extractors.contact.contacts import bridged
-from extractors.contact.earlier_answers import EarlierAnswers
-from extractors.contact.offset_surfaces import EXACTNESS_M, offset_surface
-from extractors.contact.proximity import Body, body, distance, near, nearest, separation
-from extractors.contact.surfaces import surface
-from extractors.contact.sweep import FEW, sweep
+from extractors.contact.contacts import EarlierAnswers, bridged
+from extractors.contact.proximity import FEW, Body, body, distance, near, nearest, separation, sweep
+from extractors.contact.surfaces import EXACTNESS_M, offset_surface, surface
 from extractors.contact.touch_distances import touchable
 from extractors.signals.intervals import intervals
 from extractors.thresholds import Thresholds

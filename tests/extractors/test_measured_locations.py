@@ -11,8 +11,7 @@ from capar.model.locations import ConstraintLocation
 from capar.model.observation import Segment
 from capar.model.par import FeatureSet
 from extractors.measure import measure
-from extractors.segments.locations import constraint_location
-from extractors.segments.styles import STEPS, path_style, velocity_style
+from extractors.segments import STEPS, constraint_location, path_style, velocity_style
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

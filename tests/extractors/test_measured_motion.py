@@ -11,9 +11,7 @@ from capar.model.capture import Stream, TagObject, TagType
 from extractors.bodies.poses import poses_of
 from extractors.measure import _track
 from extractors.motion.object_motion import RestPose, motion_floor, moving, rest_poses
-from extractors.signals.filters import speed
-from extractors.signals.gaps import fill_gaps, long_gaps
-from extractors.signals.noise import noise_at_rest
+from extractors.signals.filters import fill_gaps, long_gaps, noise_at_rest, speed
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

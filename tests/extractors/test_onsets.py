@@ -6,8 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from extractors.motion.motion_edges import GROWN
-from extractors.motion.onsets import onset
+from extractors.motion.motion_edges import GROWN, onset
 
 HAIR_M = 0.001
 MOST_S = 1.0

@@ -9,9 +9,8 @@ from measured_bodies import ball, box, cup, still
 from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Shape
-from extractors.contact.patches import facing_normal
-from extractors.contact.proximity import Body, body
-from extractors.contact.screening import screened
+from extractors.contact.normals import facing_normal
+from extractors.contact.proximity import Body, body, screened
 from extractors.contact.surfaces import surface
 
 DEPTH_M = 0.005

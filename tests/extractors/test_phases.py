@@ -9,11 +9,10 @@ from hypothesis import strategies as st
 from motions import shapes
 
 from capar.model.capture import Stream, TagObject, TagType
-from extractors.bodies.body_geometry import BodyGeometry, geometry_of
-from extractors.motion.motion_edges import GROWN, motion_edges
+from extractors.bodies.bodies import BodyGeometry, geometry_of
+from extractors.motion.motion_edges import GROWN, POWERS, before_seen, motion_edges, seat
 from extractors.motion.object_motion import Floor, moving, rest_poses
 from extractors.motion.phases import LEVEL, RISING, SINKING, Phase, phases, turns_of_height
-from extractors.motion.seats import POWERS, before_seen, seat
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

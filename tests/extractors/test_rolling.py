@@ -13,8 +13,8 @@ from capar.model import geometry
 from capar.model.capture import Shape, Stream, TagObject, TagType
 from capar.model.facts import Rolls
 from capar.pipelines.observation import observe
-from extractors.bodies.body_geometry import BodyGeometry, geometry_of
-from extractors.motion.rolling import angular_velocity, rolling
+from extractors.bodies.bodies import BodyGeometry, geometry_of
+from extractors.motion.phases import angular_velocity, rolling
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

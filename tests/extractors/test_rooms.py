@@ -10,8 +10,8 @@ from scipy.spatial import ConvexHull
 
 from capar.model.capture import Shape, TagObject, TagType
 from capar.model.facts import Leans, Posture, Shapeless, Solid
-from extractors.bodies.body_geometry import geometry_of
-from extractors.relations.rooms import enclosure, has_room, rooms
+from extractors.bodies.bodies import geometry_of
+from extractors.relations.places import enclosure, has_room, rooms
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()
@@ -74,7 +74,7 @@ def test_room_in_a_shape_is_sought_once(monkeypatch: pytest.MonkeyPatch) -> None
         sought.append(len(points))
         return ConvexHull(points)
 
-    monkeypatch.setattr("extractors.relations.rooms.ConvexHull", hull)
+    monkeypatch.setattr("extractors.relations.places.ConvexHull", hull)
     mug, crate = cup(0.04, 0.1), box(0.1, 0.2, 0.3)
     told = [(has_room(mug, LIMITS), has_room(crate, LIMITS)) for _ in range(3)]
     assert told == [(True, False)] * 3

@@ -12,9 +12,8 @@ from capar.model.calibration import Calibration, Found
 from capar.model.capture import Capture, PivotContact, TagObject, TagType
 from capar.model.errors import CaparError, UnknownNameError
 from capar.model.facts import Touching
-from extractors.calibration import calibrate
+from extractors.calibration import calibrate, set_values
 from extractors.measure import measure
-from extractors.set_values import set_values
 
 TOUCHES_S, LEAVES_S = 1.1, 2.8
 """When the hand of ``pick_and_place`` truly touches the thing, and leaves it [s]."""

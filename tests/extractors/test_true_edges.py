@@ -6,11 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from capar.model.capture import Stream, TagObject, TagType
-from extractors.bodies.body_geometry import BodyGeometry, geometry_of
-from extractors.contact.arrivals import settled_ends
-from extractors.motion.motion_edges import motion_edges
+from extractors.bodies.bodies import BodyGeometry, geometry_of
+from extractors.contact.blows import settled_ends
+from extractors.motion.motion_edges import motion_edges, seat
 from extractors.motion.object_motion import Floor, moving, rest_poses
-from extractors.motion.seats import seat
 from extractors.thresholds import Thresholds
 
 LIMITS = Thresholds()

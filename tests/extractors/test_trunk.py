@@ -8,8 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
 from capar.model.capture import Stream, TagObject, TagType
-from extractors.bodies.body_geometry import BodyGeometry, geometry_of
-from extractors.bodies.trunk import from_trunk
+from extractors.bodies.bodies import BodyGeometry, from_trunk, geometry_of
 from extractors.thresholds import Thresholds
 
 TIMES = np.arange(20) / 100.0

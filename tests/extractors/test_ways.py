@@ -8,9 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Stream, TagObject, TagType
 from extractors.bodies.poses import Poses, poses_of
-from extractors.motion.motion_edges import hair, motion_edges
+from extractors.motion.motion_edges import hair, motion_edges, way_out
 from extractors.motion.object_motion import RestPose, motion_floor, moving, rest_poses
-from extractors.motion.ways import way_out
 from extractors.signals.filters import gains
 from extractors.thresholds import Thresholds
 

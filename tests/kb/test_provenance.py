@@ -12,7 +12,7 @@ from capar.model.capture import Agent, Source
 from capar.model.json_form import value_from_json
 from capar.pipelines.observation import observe
 from capar_rules.engine.profiles import profile
-from capar_rules.pars.naming_rules import naming_rules
+from capar_rules.pars.pars import naming_rules
 from kb.actionary import Actionary
 from kb.exchange import bring_in, export, read
 from kb.store.names import GRAPHS

@@ -15,9 +15,9 @@ from capar.model.observation import Segment
 from capar.pipelines.live.events import SegmentEvent, Status
 from capar.pipelines.live.frames import replayed
 from capar.pipelines.live.observer import LiveObserver
-from capar_rules.engine import programs, solver
+from capar_rules.engine import solver
 from extractors.calibration import calibrate
-from extractors.relations import rooms
+from extractors.relations import places
 
 pytestmark = pytest.mark.long
 
@@ -186,8 +186,8 @@ def test_no_room_of_a_shape_is_sought_while_frames_come(monkeypatch: pytest.Monk
     def refused(*_: object) -> None:
         raise AssertionError("a room was sought late")
 
-    monkeypatch.setattr(rooms, "_pocket", refused)
-    monkeypatch.setattr(rooms, "enclosure", refused)
+    monkeypatch.setattr(places, "_pocket", refused)
+    monkeypatch.setattr(places, "enclosure", refused)
     for frame in replayed(capture):
         observer.push([frame])
     _, result = observer.finish()
@@ -205,6 +205,6 @@ def test_rules_are_read_before_the_first_frame_and_not_while_frames_come(
     def refused(*_: object) -> None:
         raise AssertionError("rules were read late")
 
-    monkeypatch.setattr(programs, "parse", refused)
+    monkeypatch.setattr(solver, "parse", refused)
     events = [event for frame in replayed(capture) for event in observer.push([frame])]
     assert settled(tuple(events))

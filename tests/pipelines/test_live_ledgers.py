@@ -48,7 +48,7 @@ from capar_rules.engine.profiles import profile
 from extractors.calibration import calibrate
 from extractors.devices.tracker import Description, Frame
 from extractors.measure import Arriving, measure
-from extractors.relations.running_sums import summed
+from extractors.relations.places import summed
 
 FRAMES = 400
 

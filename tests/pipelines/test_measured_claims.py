@@ -21,7 +21,7 @@ from capar.pipelines.measured.recording import Recording
 from capar.pipelines.measured.rows import claimed_rows
 from capar.views.movers import mover_lines
 from capar.views.panels import Mark, Panel
-from capar_rules.borders.times import constants
+from capar_rules.borders.ticks import constants
 from capar_rules.explain.claimed_measures import ARRANGED, FORMS, PREDICATES, Measure
 from capar_rules.explain.explanation import Explanation
 from capar_rules.explain.formatting import OF_BODIES

@@ -21,7 +21,7 @@ from capar.pipelines.round_trips import observed_source
 from capar.regeneration import Source, regenerate
 from capar.regeneration.captures import capture_of
 from capar.regeneration.styles import paced
-from capar_rules.pars.complex_pars import allen
+from capar_rules.pars.pars import allen
 
 RATE_HZ = 30.0
 HOLDS, REACHES = Hand("holds", "crate"), Hand("reaches", "crate")

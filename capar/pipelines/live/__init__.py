@@ -7,7 +7,7 @@ goes on. The long one gives the facts of the result, over all of which ``finish`
 once; no frame is measured again, and no more of them are held in memory than the long window holds.
 
 Windows overlap, and little is measured twice. Contact is asked about only at frames whose poses
-differ from the window before (``extractors.contact.earlier_answers``); normals of patches are kept
+differ from the window before (``extractors.contact.contacts``); normals of patches are kept
 by pose. Short windows begin at whole seconds, so that what is measured at their first frame recurs,
 and before every motion that goes on, as how it is parted is told from its beginning. They are
 measured twice a second, when a segment that was found is to be settled, when a rest or a stand has

@@ -8,8 +8,7 @@ from jaxtyping import Float
 from capar.model.calibration import Calibration
 from capar.model.capture import Stream
 from capar.pipelines.live.frames import Window
-from extractors.bodies.bodies import Bodies, bodies_of
-from extractors.bodies.body_geometry import BodyGeometry
+from extractors.bodies.bodies import Bodies, BodyGeometry, bodies_of
 from extractors.bodies.poses import Poses
 from extractors.calibration import check_clock, thresholds_of
 

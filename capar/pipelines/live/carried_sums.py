@@ -5,8 +5,7 @@ from dataclasses import replace
 from capar.model.capture import Capture, TagType
 from capar.pipelines.live.frames import Window
 from extractors.measure import Measurements
-from extractors.relations.places import sums_at
-from extractors.relations.running_sums import FROM_THE_BEGINNING, Sums
+from extractors.relations.places import FROM_THE_BEGINNING, Sums, sums_at
 
 
 class CarriedSums:

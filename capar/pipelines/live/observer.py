@@ -35,14 +35,14 @@ from capar.pipelines.live.rule_process import RuleProcess
 from capar.pipelines.live.segment_ledger import Contradictions, SegmentLedger
 from capar.pipelines.live.sentences import Teller
 from capar.pipelines.live.undecided import Handling, awaited, decided_at, nameless, undecided
-from capar_rules.borders.times import in_frames, times
+from capar_rules.borders.ticks import in_frames, times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.pars.inference import Inference
 from extractors.calibration import thresholds_of
-from extractors.contact.earlier_answers import EarlierAnswers
+from extractors.contact.contacts import EarlierAnswers
 from extractors.measure import Measurements, measured
-from extractors.relations.rooms import seek_rooms
-from extractors.relations.weight_bearing import PART
+from extractors.relations.places import seek_rooms
+from extractors.relations.support import PART
 
 EDGES = ("starts_moving", "stops_moving")
 """The events at the end of a segment whose frames are known later than others."""

@@ -11,8 +11,7 @@ from jaxtyping import Float
 
 from capar.model.capture import Stream
 from capar.pipelines.live.frames import Window
-from extractors.bodies.bodies import Bodies
-from extractors.bodies.body_geometry import BodyGeometry
+from extractors.bodies.bodies import Bodies, BodyGeometry
 from extractors.bodies.poses import Poses
 
 PLACE, TURN = 3, 4

@@ -19,7 +19,6 @@ from capar.model.errors import CaptureError
 from capar.model.facts import MEASURED, Fact, Frames, Observed, RateMhz, SweptAzimuth
 from capar.model.locations import SampledTrack
 from capar.model.observation import Observation, ObservedObject, Segment
-from capar.pipelines.flicker import flicker_notices
 from capar.pipelines.live.carried_poses import CarriedPoses
 from capar.pipelines.live.carried_sums import CarriedSums
 from capar.pipelines.live.fact_ledger import FactLedger
@@ -27,22 +26,19 @@ from capar.pipelines.live.frames import Window
 from capar.pipelines.live.recording_file import PosesFile, ValuesFile
 from capar.pipelines.live.segment_details import SegmentDetails, segment_details
 from capar.pipelines.live.segment_ledger import SettledSegment
-from capar.pipelines.movers import unmoved_notices
+from capar.pipelines.observation import flicker_notices, unmoved_notices
 from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import Profile
 from capar_rules.movers.movers import movers
-from capar_rules.pars.complex_pars import compose
 from capar_rules.pars.inference import Key, infer
-from capar_rules.pars.naming_rules import naming_rules
-from capar_rules.pars.primitive_pars import ipars, upars
-from extractors.bodies.bodies import Bodies
-from extractors.bodies.observed_objects import observed_object
-from extractors.contact.earlier_answers import EarlierAnswers
-from extractors.forces.force_styles import force_styles
+from capar_rules.pars.pars import compose, ipars, naming_rules, upars
+from extractors.bodies.bodies import Bodies, observed_object
+from extractors.contact.contacts import EarlierAnswers
+from extractors.forces.forces import force_styles
 from extractors.measure import Measurements, measured
-from extractors.relations.guide_locations import guide_location
+from extractors.relations.guides import guide_location
 from extractors.relations.places import without_small_sweeps
-from extractors.segments.sampled_tracks import track_of
+from extractors.segments import track_of
 
 
 @dataclass(frozen=True, slots=True)

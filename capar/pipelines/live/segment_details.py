@@ -6,12 +6,10 @@ from capar.model.locations import ConstraintLocation
 from capar.model.par import Style
 from capar.pipelines.live.frames import Window
 from capar.pipelines.live.segment_ledger import SettledSegment
-from capar_rules.pars.primitive_pars import Measured
+from capar_rules.pars.pars import Measured
 from extractors.calibration import thresholds_of
 from extractors.measure import Measurements
-from extractors.segments.locations import constraint_location
-from extractors.segments.motion_kinds import moved_path
-from extractors.segments.styles import style
+from extractors.segments import constraint_location, moved_path, style
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import ComplexPar
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar_rules.engine.profiles import Profile
-from extractors.bodies.observed_objects import observed_object
+from extractors.bodies.bodies import observed_object
 from kb.language.describe import describe
 
 

@@ -11,9 +11,9 @@ from capar.model.facts import Observed, Resting
 from capar.pipelines.explanation import Explained
 from capar.views.lettering import Span
 from capar.views.panels import Curve, Held, Limit
-from capar_rules.borders.times import in_frames, times
+from capar_rules.borders.ticks import in_frames, times
 from capar_rules.explain.quantities import length
-from extractors.bodies.body_geometry import BodyGeometry
+from extractors.bodies.bodies import BodyGeometry
 
 MILLI, CENTI = 1000.0, 100.0
 

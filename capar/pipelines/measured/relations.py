@@ -12,14 +12,14 @@ from capar.pipelines.distances import distances, frames_between
 from capar.pipelines.measured.recording import CENTI, MILLI, Recording, held, told_beside
 from capar.views.lettering import Span
 from capar.views.panels import Curve, Limit, Mark, Panel
-from capar_rules.borders.times import constants
+from capar_rules.borders.ticks import constants
 from capar_rules.explain.arrangements import AFTER_DEG, AHEAD_DEG, steepest_deg
 from capar_rules.explain.claimed_measures import ANY, Measure
 from capar_rules.explain.claims import Quantity
 from capar_rules.explain.quantities import LEAST_M, length, percent, upward
 from capar_rules.explain.touch_notes import BORDER
 from extractors.calibration import thresholds_of
-from extractors.contact.arrivals import SETTLES
+from extractors.contact.blows import SETTLES
 from extractors.motion.impacts import APPROACH_S, closing_speed
 from extractors.relations.arrangement import Pair
 

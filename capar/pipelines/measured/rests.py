@@ -15,7 +15,7 @@ from capar.pipelines.measured.recording import MILLI, Recording, held
 from capar.pipelines.measured.relations import Series
 from capar.views.lettering import Span
 from capar.views.panels import Limit, Panel
-from capar_rules.borders.times import constants
+from capar_rules.borders.ticks import constants
 from capar_rules.explain.claimed_measures import Measure
 from capar_rules.explain.claims import Quantity
 from capar_rules.explain.quantities import (
@@ -23,7 +23,7 @@ from capar_rules.explain.quantities import (
 )
 from extractors.calibration import thresholds_of
 from extractors.motion.object_motion import motion_floor, pace_at_rest, paces
-from extractors.signals.clock import frame_rate
+from extractors.signals.intervals import frame_rate
 from extractors.thresholds import Thresholds
 
 FAST = 10.0

@@ -21,7 +21,7 @@ from capar_rules.explain.quantities import (
     length,
 )
 from extractors.calibration import thresholds_of
-from extractors.motion.turning_points import most_turns
+from extractors.motion.phases import most_turns
 
 
 def _to_and_fro(known: Recording, told: Quantity, forms: frozenset[str]) -> Panel | None:

@@ -13,7 +13,7 @@ from capar.model.geometry import from_mean
 from capar.pipelines.measured.recording import MILLI, Recording, held, told_beside
 from capar.pipelines.measured.relations import Series
 from capar.views.panels import Limit, Mark, Panel
-from capar_rules.borders.times import constants
+from capar_rules.borders.ticks import constants
 from capar_rules.explain.claimed_measures import Measure
 from capar_rules.explain.claims import Quantity
 from capar_rules.explain.quantities import (
@@ -22,7 +22,7 @@ from capar_rules.explain.quantities import (
 )
 from capar_rules.explain.quantities import change as change_of
 from extractors.calibration import thresholds_of
-from extractors.motion.leaning import lean, spin_steps
+from extractors.motion.phases import lean, spin_steps
 from extractors.relations.places import turned_and_gone
 
 

@@ -13,7 +13,7 @@ from capar.model.geometry import from_middle
 from capar.pipelines.measured.recording import CENTI, MILLI, Recording, held, told_beside
 from capar.pipelines.measured.relations import Series
 from capar.views.panels import Limit, Mark, Panel
-from capar_rules.borders.times import constants
+from capar_rules.borders.ticks import constants
 from capar_rules.explain.claimed_measures import Measure
 from capar_rules.explain.claims import Quantity
 from capar_rules.explain.quantities import (

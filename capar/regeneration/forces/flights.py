@@ -14,7 +14,7 @@ from capar.regeneration.forces.force_kinds import ForceKind
 from capar.regeneration.launches import Launch
 from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source
-from extractors.forces.blow_velocities import VELOCITY_S, velocity_at
+from extractors.forces.forces import VELOCITY_S, velocity_at
 from extractors.forces.free_motion import FreeMotion, Resistance, Surface, free_motion
 
 ARM = ("upper_arm", "forearm", "hand", "fingers", "fingertips", "thumb")

@@ -5,8 +5,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from capar_rules.engine.slicing import FITS
-from capar_rules.engine.syntax import split_arguments
+from capar_rules.engine.syntax import FITS, split_arguments
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contrast.condition_matching import Atoms, Match
 from capar_rules.explain.contrast.deciding_clauses import (

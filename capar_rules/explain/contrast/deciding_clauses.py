@@ -3,8 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from capar_rules.engine.slicing import FITS
-from capar_rules.engine.syntax import Literal, split_arguments
+from capar_rules.engine.syntax import FITS, Literal, split_arguments
 from capar_rules.explain.clock import Clock
 from capar_rules.explain.contrast.condition_matching import Atoms, Match, valued
 from capar_rules.explain.contrast.neighbours import FEATURE, Neighbour, feature_strings

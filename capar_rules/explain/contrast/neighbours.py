@@ -9,8 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from capar_rules.engine.slicing import FITS, nodes_read
-from capar_rules.engine.syntax import Signature, Statement, split_arguments
+from capar_rules.engine.syntax import FITS, Signature, Statement, nodes_read, split_arguments
 from capar_rules.explain.contrast.near_misses import SPECIALISES, names_in_pairs
 from capar_rules.explain.rule_base import RuleBase
 from capar_rules.explain.rule_forms import SIDES, Form, forms_of_segment, rules_of

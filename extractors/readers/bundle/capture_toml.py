@@ -22,7 +22,7 @@ from capar.model.capture import (
 )
 from capar.model.errors import CaptureError, FileError
 from capar.model.geometry import runs
-from extractors.contact.own_hands import with_meeting_hands
+from extractors.contact.contacts import with_meeting_hands
 from extractors.readers.body_names.body_names import parts, without_side
 from extractors.readers.bundle.declared import Declared, declared
 from extractors.readers.bundle.grouping import grouped

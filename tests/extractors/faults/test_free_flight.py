@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from measured_bodies import stream
 
 from capar.model.capture import Sensor, TagObject, TagType
-from extractors.bodies.body_geometry import BodyGeometry, geometry_of
+from extractors.bodies.bodies import BodyGeometry, geometry_of
 from extractors.faults.free_flight import Flight, flights
 from extractors.thresholds import Thresholds
 

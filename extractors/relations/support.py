@@ -1,20 +1,20 @@
-"""Which foot bears the body's weight, from where the feet and the body's middle are."""
+"""What bears whom: feet that bear the body, loads, and seats."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Sensor
-from capar.model.facts import Bears, Touching
-from extractors.bodies.bodies import Bodies
-from extractors.bodies.body_geometry import BodyGeometry
-from extractors.bodies.trunk import trunk_sensor
-from extractors.contact.footing import FOOT
+from capar.model.facts import Bears, Displaced, Fact, Seated, Touching
+from extractors.bodies.bodies import Bodies, BodyGeometry, trunk_sensor
+from extractors.contact.contacts import FOOT
 from extractors.contact.normals import contact_normal
-from extractors.contact.touching_part import touching_part
-from extractors.motion.rest import resting
+from extractors.contact.surfaces import surface
+from extractors.contact.touch_distances import touching_part
+from extractors.motion.motion_edges import seat
+from extractors.motion.object_motion import resting
 from extractors.signals.intervals import Interval, intervals, mask
 from extractors.thresholds import Thresholds
 
@@ -187,3 +187,114 @@ def _bears(
     part = touching_part(bodies, foot.name, thing, frame)
     normal = contact_normal(part, thing, frame, thresholds)
     return normal is not None and bool(normal[2] >= thresholds.steep)
+
+
+def rides(
+    load: BodyGeometry,
+    bearer: BodyGeometry,
+    touching: Interval,
+    motions: Iterable[Interval],
+    thresholds: Thresholds,
+) -> bool:
+    """Whether a body is borne by another one, in a contact, and goes along when that one moves.
+
+    It is borne if it lies on it as the motion begins, or in it with its bottom below: what stands
+    between the shaft of a rake and its teeth has none below. It goes along if it stays at its
+    place on the bearer, in comparison with the bearer's own way, or in the bearer: a ball may
+    roll about in a box.
+
+    Args:
+        load: The body.
+        bearer: What may bear it.
+        touching: Their contact, as a closed interval of frames.
+        motions: When the bearer moves.
+        thresholds: What is steep, and how far a load may shift.
+    """
+    for begin, end in motions:
+        first, last = max(begin, touching[0]), min(end, touching[1])
+        if first < last and _goes_along(load, bearer, (first, last), thresholds):
+            return True
+    return False
+
+
+def _goes_along(
+    load: BodyGeometry, bearer: BodyGeometry, span: Interval, thresholds: Thresholds
+) -> bool:
+    first, last = span
+    part = slice(first, last + 1)
+    offset = load.middles[part] - bearer.middles[part]
+    own = np.swapaxes(bearer.turns_at(part), 1, 2) @ offset[..., None]
+    if np.isnan(own).any():
+        return False
+    contained = [
+        _contains(bearer, load, frame) and _bottom_below(bearer, load, frame) for frame in span
+    ]
+    if not contained[0]:
+        normal = contact_normal(load, bearer, first, thresholds)
+        if normal is None or normal[2] < thresholds.steep:
+            return False
+    if all(contained):
+        return True
+    stray = float(np.linalg.norm(own - own[0], axis=1).max())
+    way = float(np.linalg.norm(bearer.middles[part] - bearer.middles[first], axis=1).max())
+    return stray <= max(thresholds.motion_floor_m, thresholds.ride_share * way)
+
+
+def _contains(bearer: BodyGeometry, load: BodyGeometry, frame: int) -> bool:
+    """Whether the middle of a load is within the convex outline of its bearer, which is larger."""
+    if bearer.planes is None or _size(load) >= _size(bearer):
+        return False
+    point = bearer.turn(frame).T @ (load.middles[frame] - bearer.middles[frame])
+    return bool((bearer.planes[:, :3] @ point + bearer.planes[:, 3] <= 0.0).all())
+
+
+def _bottom_below(bearer: BodyGeometry, load: BodyGeometry, frame: int) -> bool:
+    """Whether the bearer's true surface is below the middle of a load, as a bottom is."""
+    if bearer.shape is None:
+        return False
+    down = np.array([[0.0, 0.0, -1.0]]) @ bearer.turn(frame)
+    centre = bearer.shape.bounds.mean(axis=0)
+    point = (load.middles[frame] - bearer.middles[frame]) @ bearer.turn(frame) + centre
+    places, _, _ = surface(bearer.shape).mesh.ray.intersects_location(point[None], down)
+    return bool(len(places))
+
+
+def _size(body: BodyGeometry) -> float:
+    """The volume of the box around a body [m3]; 0 without a shape."""
+    return float(np.prod(body.shape.size)) if body.shape else 0.0
+
+
+def seated(
+    things: Mapping[str, BodyGeometry],
+    hands: Mapping[str, BodyGeometry],
+    touches: Iterable[Touching],
+    known: Iterable[Fact],
+    thresholds: Thresholds,
+) -> Iterator[Fact]:
+    """When each thing is down on what bears it: it comes and goes while one of the two moves.
+
+    On what has no surface of its own nothing is seen to come down: there a contact is its distance.
+    A palm that faces up bears a thing as a table does.
+
+    Args:
+        things: Objects by name.
+        hands: Acting end-effectors by name.
+        touches: Contacts of either with objects.
+        known: When things move, among other facts.
+        thresholds: What is steep, and what a hair is.
+    """
+    moves = [fact for fact in known if isinstance(fact, Displaced)]
+    for touch in touches:
+        if touch.other not in things:
+            continue
+        if touch.body in things and things[touch.other].shape:
+            body, other = things[touch.body], things[touch.other]
+        elif touch.body in hands and hands[touch.body].shape:
+            body, other = things[touch.other], hands[touch.body]
+        else:
+            continue
+        normal = contact_normal(body, other, touch.first, thresholds)
+        if normal is not None and normal[2] >= thresholds.steep:
+            spans = [(m.first, m.last) for m in moves if m.object in (touch.body, touch.other)]
+            down = seat(body, other, (touch.first, touch.last), spans, thresholds)
+            yield Seated(body.name, other.name, *down)
