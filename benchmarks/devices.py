@@ -35,16 +35,12 @@ import tracked
 
 from extractors.devices.bird_formats import FORMATS
 from extractors.devices.drivers import find_tracker
-from extractors.devices.fastrak_records import ITEMS
-from extractors.devices.fastrak_simulator import FastrakSimulator
-from extractors.devices.flock_commands import MOST_HZ, line_limit_hz
-from extractors.devices.flock_rig import FlockRig
-from extractors.devices.flock_simulator import FlockSimulator
-from extractors.devices.motion_source import SmoothMotion
-from extractors.devices.motionstar_simulator import MotionStarSimulator, ServerFaults
-from extractors.devices.simulated_line import Faults
+from extractors.devices.fastrak import ITEMS, FastrakSimulator
+from extractors.devices.flock import MOST_HZ, FlockRig, FlockSimulator, line_limit_hz
+from extractors.devices.motionstar import MotionStarSimulator, ServerFaults
+from extractors.devices.simulator import Faults, SmoothMotion
 from extractors.devices.tracker import Description, Frame, LiveTracker
-from extractors.devices.vrpn_simulator import VrpnSimulator
+from extractors.devices.vrpn import VrpnSimulator
 
 KEPT = 0.9
 TURN_S = 0.01

@@ -13,12 +13,12 @@ import time
 from collections.abc import Callable
 
 from capar.model.errors import DeviceError
-from extractors.devices import birdnet_packets as birdnet
-from extractors.devices import fastrak_records as fastrak
-from extractors.devices import flock_records as flock
-from extractors.devices import vrpn_messages as vrpn
-from extractors.devices.addresses import parse_address
+from extractors.devices import fastrak as fastrak
+from extractors.devices import flock as flock
+from extractors.devices import motionstar as birdnet
+from extractors.devices import vrpn as vrpn
 from extractors.devices.bird_formats import FORMATS, Scaling, pose_of_words
+from extractors.devices.tracker import parse_address
 
 LONGEST_S = 1.0
 GROWTH_KB = 8192

@@ -22,8 +22,8 @@ import numpy as np
 import scene
 
 from capar.model.capture import Capture, Sensor, Stream
-from capar.pipelines.live.events import Status
 from capar.pipelines.live.frames import Poses, body_names, replayed
+from capar.pipelines.live.ledgers import Status
 from capar.pipelines.live.observer import LiveObserver
 from capar.pipelines.observation import observe_measured
 from extractors.calibration import calibrate

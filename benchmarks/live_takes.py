@@ -28,8 +28,8 @@ from windows import repeated
 from capar.model.capture import Capture
 from capar.model.json_form import to_json
 from capar.model.observation import Segment
-from capar.pipelines.live.events import SegmentEvent, Status
 from capar.pipelines.live.frames import replayed
+from capar.pipelines.live.ledgers import SegmentEvent, Status
 from capar.pipelines.live.observer import LiveObserver
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of

@@ -26,8 +26,7 @@ from capar.model.facts import Displaced, MovedBy
 from capar_rules.borders.deflicker import steady
 from capar_rules.movers.movers import movers
 from extractors.measure import measure
-from extractors.readers.bundle.capture_toml import read_capture, takes
-from extractors.readers.bundle.grouping import grouped
+from extractors.readers.bundle.capture_toml import grouped, read_capture, takes
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 BUNDLES = ("bimacs_optitrack", "manipnet", "omomo_intermimic")

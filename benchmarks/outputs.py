@@ -319,7 +319,7 @@ def places() -> Iterator[str]:
 def _takes(path: Path) -> list[str]:
     script = (
         "import sys, json\n"
-        "try:\n    from extractors.readers.bundle.location import takes\n"
+        "try:\n    from extractors.readers.bundle.capture_toml import takes\n"
         "except ImportError:\n    from extractors.readers.bundle import takes\n"
         "print(json.dumps(takes(sys.argv[1])))"
     )

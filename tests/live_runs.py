@@ -12,10 +12,9 @@ from windows import repeated
 
 from capar.model.capture import Capture, Stream
 from capar.model.observation import Observation
-from capar.pipelines.live.events import SegmentEvent
 from capar.pipelines.live.frames import Poses, body_names, replayed, with_streams
-from capar.pipelines.live.horizons import horizons_of
-from capar.pipelines.live.observer import LiveObserver
+from capar.pipelines.live.ledgers import SegmentEvent
+from capar.pipelines.live.observer import LiveObserver, horizons_of
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from extractors.calibration import calibrate

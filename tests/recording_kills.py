@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from extractors.devices.motion_source import SmoothMotion
 from extractors.devices.recording import RecordingWriter, read_live_recording
+from extractors.devices.simulator import SmoothMotion
 from extractors.devices.tracker import Description, Frame
 
 SENSORS = ("right_hand", "head", "mug")

@@ -19,7 +19,7 @@ from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from extractors.contact.contacts import with_meeting_hands
 from extractors.measure import measure
-from extractors.readers.bundle.grouping import grouped
+from extractors.readers.bundle.capture_toml import grouped
 
 Act = Callable[..., motions.Trial]
 PEOPLE = pytest.mark.parametrize("performer", motions.PERFORMERS, ids=lambda each: each.name)

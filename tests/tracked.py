@@ -9,10 +9,10 @@ import numpy as np
 from flock_bits import decode, poses_of
 from scipy.spatial.transform import Rotation
 
-from extractors.devices.motionstar_simulator import SentPacket
-from extractors.devices.simulated_line import Sent
+from extractors.devices.motionstar import SentPacket
+from extractors.devices.simulator import Sent
 from extractors.devices.tracker import Frame, Tracker
-from extractors.devices.vrpn_simulator import SentPose
+from extractors.devices.vrpn import SentPose
 
 TO_WORLD = Rotation.from_euler("x", 180.0, degrees=True)
 SAME = 1e-6

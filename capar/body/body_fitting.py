@@ -30,15 +30,18 @@ from capar.body.sensor_fitting import Fit, fit_capture
 from capar.body.shapes import segment_surface
 from capar.model import geometry
 from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagType
-from extractors.readers.body_names.body_names import BY_WORDS, SIDES, BodyName, body_names
-from extractors.readers.body_names.conventions import (
+from extractors.readers.bundle.capture_toml import files_of
+from extractors.readers.drafting.contents import sided
+from extractors.readers.names import (
+    BY_WORDS,
+    SIDES,
+    BodyName,
     ConventionError,
+    body_names,
     conventions,
     coverage,
     recognise,
 )
-from extractors.readers.bundle.capture_toml import files_of
-from extractors.readers.drafting.sides import sided
 
 LEAST_JOINTS = 0.6
 """Bodies are the joints of a skeleton if a convention has so many of its places among them [1]."""

@@ -11,8 +11,8 @@ from capar.body.human import Human
 from capar.body.joint_fitting import RIGID_M
 from capar.model import geometry
 from capar.model.errors import CaparError
-from extractors.readers.body_names.body_names import SIDES, BodyName, without_side
-from extractors.readers.drafting.stance import Points
+from extractors.readers.drafting.contents import Points
+from extractors.readers.names import SIDES, BodyName, without_side
 
 OPEN = {"knuckle_flexion": 0.0, "finger_flexion": 0.0, "thumb_opposition": 0.0}
 """Angles of an open hand [rad]."""

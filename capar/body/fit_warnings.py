@@ -16,7 +16,7 @@ from capar.body.fingers import Closing
 from capar.body.sensor_fitting import Fit
 from capar.model import geometry
 from capar.model.capture import Capture, Sensor, Shape, TagObject, TagType
-from extractors.readers.body_names.body_names import SIDES, BodyName, without_side
+from extractors.readers.names import SIDES, BodyName, without_side
 
 FAR_M = 0.03
 """Residuals larger than this are reported [m]."""

@@ -14,7 +14,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.body.human import Human
 from capar.body.shapes import segment_surface
 from capar.model.errors import UnknownNameError
-from extractors.readers.body_names.body_names import SIDES, parts, without_side
+from extractors.readers.names import SIDES, parts, without_side
 
 SHORTEST_RAD = 1e-3
 """A solver whose steps have become shorter has found what there is to find [rad]."""

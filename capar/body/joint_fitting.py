@@ -21,9 +21,8 @@ from capar.body.point_fitting import (
     with_head,
 )
 from capar.model import geometry
-from extractors.readers.body_names.body_names import SIDES, BodyName, parts, without_side
-from extractors.readers.body_names.conventions import Convention
-from extractors.readers.drafting.stance import Points
+from extractors.readers.drafting.contents import Points
+from extractors.readers.names import SIDES, BodyName, Convention, parts, without_side
 
 FACE = "face"
 """Name of a point that is put before the head, in the direction in which the face looks."""

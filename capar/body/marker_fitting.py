@@ -25,9 +25,8 @@ from capar.body.point_fitting import (
     with_trunk,
 )
 from capar.body.skeleton import skeleton
-from extractors.readers.body_names.body_names import SIDES, BodyName
-from extractors.readers.body_names.conventions import Convention
-from extractors.readers.drafting.stance import Points, mean_of, standing_by_parts
+from extractors.readers.drafting.contents import Points, mean_of, standing_by_parts
+from extractors.readers.names import SIDES, BodyName, Convention
 
 LEAST_MARKERS = 3
 """So many markers tell how a cluster is placed and turned."""

@@ -14,8 +14,7 @@ from capar.body.inverse_kinematics import DirectionTask, GroundTask, PointTask, 
 from capar.body.sensor_fitting import LARGEST_STEP, SOLVER
 from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH
 from capar.model.errors import CaparError
-from extractors.readers.body_names.body_names import SIDES, parts, without_side
-from extractors.readers.body_names.conventions import Convention
+from extractors.readers.names import SIDES, Convention, parts, without_side
 
 BENT = {"elbow_flexion": 0.4, "knee_flexion": 0.1, "hip_flexion": 0.05}
 """Where the search begins [rad]: a straight limb does not tell which way it bends."""

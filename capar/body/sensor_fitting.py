@@ -27,7 +27,7 @@ from capar.body.skeleton import skeleton
 from capar.model import geometry
 from capar.model.capture import Capture, Stream
 from capar.model.errors import CaparError
-from extractors.readers.body_names.body_names import without_side
+from extractors.readers.names import without_side
 
 SOLVER = "daqp"
 POSITION_COST = 10.0

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from capar.model.calibration import Calibration
     from capar.model.capture import Capture
     from capar.model.observation import Observation
-    from capar.pipelines.live.events import SegmentEvent
     from capar.pipelines.live.frames import Poses
+    from capar.pipelines.live.ledgers import SegmentEvent
     from capar.pipelines.live.observer import LiveObserver
     from capar_rules.engine.profiles import Profile
     from extractors.measure import Measurements
@@ -93,8 +93,7 @@ def observe_live(options: LiveOptions, rules: "Profile") -> "Observation":
 
 
 def _from_capture(options: LiveOptions, rules: "Profile") -> "Observation":
-    from capar.pipelines.live.frames import replayed
-    from capar.pipelines.live.lead_in import lead_in
+    from capar.pipelines.live.frames import lead_in, replayed
     from capar.pipelines.live.observer import LiveObserver
     from extractors.calibration import calibrate
     from extractors.readers.bundle.capture_toml import read_capture
@@ -108,9 +107,7 @@ def _from_capture(options: LiveOptions, rules: "Profile") -> "Observation":
 
 
 def _from_device(options: LiveOptions, rules: "Profile") -> "Observation":
-    from capar.pipelines.live.device_frames import DeviceFrames
-    from capar.pipelines.live.frames import body_names
-    from capar.pipelines.live.lead_in import capture_of
+    from capar.pipelines.live.frames import DeviceFrames, body_names, capture_of
     from capar.pipelines.live.observer import LiveObserver
     from extractors.calibration import calibrate
     from extractors.devices.drivers import find_tracker
@@ -237,7 +234,7 @@ def _programs(options: LiveOptions, opened: ExitStack) -> Iterator[Callable[[str
 def _tell(
     events: "list[SegmentEvent]", options: LiveOptions, sends: list[Callable[[str], None]]
 ) -> None:
-    from capar.pipelines.live.events import event_row
+    from capar.pipelines.live.ledgers import event_row
 
     for event in events:
         line = json.dumps(event_row(event), ensure_ascii=False)

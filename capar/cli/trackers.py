@@ -35,7 +35,7 @@ def devices(
 
 def _listed() -> dict[str, Any]:
     from extractors.devices.drivers import EXAMPLES
-    from extractors.devices.serial_line import find_ports
+    from extractors.devices.lines import find_ports
 
     return {"drivers": EXAMPLES, "ports": find_ports()}
 
@@ -108,8 +108,7 @@ def record(
     The recording is kept: after a crash or a kill the bundle is made from it.
     """
     from capar.model.errors import FileError
-    from extractors.devices.bundle_writer import write_bundle
-    from extractors.devices.recording import read_live_recording
+    from extractors.devices.recording import read_live_recording, write_bundle
 
     live = Path(source)
     if output.exists():
@@ -185,8 +184,8 @@ def simulate(
     as_json: Annotated[bool, typer.Option("--json", help="Print for machines.")] = False,
 ) -> None:
     """Simulate a tracker on a pseudo-terminal or on loopback, and say its address."""
-    from extractors.devices.motion_source import CapturedMotion, MotionSource, SmoothMotion
-    from extractors.devices.simulators import Wanted, make_simulator
+    from extractors.devices.drivers import Wanted, make_simulator
+    from extractors.devices.simulator import CapturedMotion, MotionSource, SmoothMotion
     from extractors.readers.bundle.capture_toml import read_capture
 
     motion: MotionSource = SmoothMotion(sensors)

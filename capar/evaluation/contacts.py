@@ -30,8 +30,8 @@ from capar.pipelines.observation import facts_program
 from capar_rules.engine.profiles import Profile
 from extractors.readers.bundle.capture_toml import frame_times, read_capture
 from extractors.readers.files import check_zip
-from extractors.readers.schema.document import substituted
-from extractors.readers.schema.names import constant_name
+from extractors.readers.names import constant_name
+from extractors.readers.schema.entry import substituted
 
 
 def read_contact_arrays(

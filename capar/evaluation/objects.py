@@ -26,14 +26,17 @@ from capar.model.errors import UnknownNameError
 from capar.model.observation import Observation, Segment
 from capar.pipelines.observation import observe
 from capar_rules.engine.profiles import DEFAULT, Profile
-from extractors.readers.bundle.capture_toml import read_capture, read_files
-from extractors.readers.bundle.location import open_bundle
-from extractors.readers.bundle.many import many_objects
-from extractors.readers.bundle.resampling import resampled
-from extractors.readers.schema.names import constant_name
+from extractors.readers.bundle.bodies import resampled
+from extractors.readers.bundle.capture_toml import (
+    many_objects,
+    open_bundle,
+    read_capture,
+    read_files,
+)
+from extractors.readers.names import constant_name
 
 if TYPE_CHECKING:
-    from extractors.readers.bundle.world import WorldRecording
+    from extractors.readers.bundle.bodies import WorldRecording
     from extractors.readers.schema.capture import CaptureFile
 
 

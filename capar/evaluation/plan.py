@@ -11,10 +11,9 @@ from capar.evaluation.labels import Contradictions, Kind
 from capar.evaluation.metrics import Interval
 from capar.model.errors import CaparError, FileError, UnknownNameError
 from capar.model.observation import ObservedLink, Segment
-from extractors.readers.bundle.location import FILE, find_place, take_words
-from extractors.readers.schema.bodies import Positive
-from extractors.readers.schema.document import expanded, read_toml, substituted, validated
-from extractors.readers.schema.entry import Entry, key
+from extractors.readers.bundle.capture_toml import FILE, find_place, take_words
+from extractors.readers.schema.capture import Positive
+from extractors.readers.schema.entry import Entry, expanded, key, read_toml, substituted, validated
 
 # ruff: noqa: RUF012  (pydantic copies the defaults of fields)
 

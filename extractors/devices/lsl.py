@@ -12,8 +12,7 @@ import numpy as np
 
 from capar.model.capture import NAME
 from capar.model.errors import DeviceError
-from extractors.devices.addresses import Address
-from extractors.devices.tracker import Description, DeviceLostError, Frame, LiveTracker
+from extractors.devices.tracker import Address, Description, DeviceLostError, Frame, LiveTracker
 
 PARTS = (
     "PositionX", "PositionY", "PositionZ",

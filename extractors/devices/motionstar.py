@@ -1,23 +1,286 @@
-"""Ascension MotionStar by its Ethernet server: BirdNet over TCP or UDP.
+"""Ascension MotionStar by its Ethernet server: packets, driver and simulator."""
 
-Uncertain without the device, and so switches: the sign of the quaternion (``quaternion``) and
-the divisor of words (``divisor``). Header times are passed on as the device's, though it is not
-certain whether their milliseconds are a time or an interval. Packets are counted by their
-sequence numbers; a server that leaves them as they are loses packets unseen, which is told.
-"""
-
+import random
+import socket
+import struct
 import time
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from typing import Any
 
 from capar.model.errors import DeviceError
-from extractors.devices import birdnet_packets as birdnet
-from extractors.devices.addresses import Address
-from extractors.devices.bird_formats import FORMATS, Scaling, pose_of_words
-from extractors.devices.birdnet_packets import Kind, Packet
-from extractors.devices.flock_commands import EVERY, HEMISPHERES, MOST_HZ, error_text
-from extractors.devices.frames import SensorReading, frame_of
-from extractors.devices.network_line import NetworkLine
-from extractors.devices.tracker import Description, DeviceLostError, Frame, LiveTracker
+from extractors.devices.bird_formats import (
+    FORMATS,
+    BirdFormat,
+    Scaling,
+    pose_of_words,
+    words_of_pose,
+)
+from extractors.devices.flock import (
+    ACCESSIBLE,
+    ERC,
+    EVERY,
+    HEMISPHERES,
+    MOST_HZ,
+    RUNNING,
+    SENSOR,
+    error_text,
+)
+from extractors.devices.lines import NetworkLine
+from extractors.devices.simulator import MotionSource, Simulator
+from extractors.devices.tracker import (
+    Address,
+    Description,
+    DeviceLostError,
+    Frame,
+    LiveTracker,
+    SensorReading,
+    frame_of,
+)
+
+PROTOCOL = 3
+HEADER = struct.Struct(">HHIBBBBHH")
+MOST_BODY = 4096
+"""Bytes of the largest body that is believed; more is no packet."""
+
+SYSTEM_STATUS = struct.Struct(">BBBBB6sBBBH")
+BIRD_STATUS_SIZE = 70
+BUTTONS = 0x80
+
+
+class Kind(IntEnum):
+    """Packet types; a response is what its command asks for."""
+
+    WAKE_UP = 10
+    SHUT_DOWN = 11
+    WAKE_UP_DONE = 20
+    SHUT_DOWN_DONE = 21
+    ILLEGAL = 40
+    UNKNOWN = 50
+    GET_STATUS = 101
+    SEND_SETUP = 102
+    SINGLE_SHOT = 103
+    RUN_CONTINUOUS = 104
+    STOP_DATA = 105
+    SEND_DATA = 106
+    STATUS = 201
+    SETUP_DONE = 202
+    SINGLE_SHOT_DONE = 203
+    RUN_CONTINUOUS_DONE = 204
+    STOP_DATA_DONE = 205
+    SEND_DATA_DONE = 206
+    DATA = 210
+
+
+RESPONSES = {
+    Kind.WAKE_UP: Kind.WAKE_UP_DONE,
+    Kind.SHUT_DOWN: Kind.SHUT_DOWN_DONE,
+    Kind.GET_STATUS: Kind.STATUS,
+    Kind.SEND_SETUP: Kind.SETUP_DONE,
+    Kind.SINGLE_SHOT: Kind.SINGLE_SHOT_DONE,
+    Kind.RUN_CONTINUOUS: Kind.RUN_CONTINUOUS_DONE,
+    Kind.STOP_DATA: Kind.STOP_DATA_DONE,
+    Kind.SEND_DATA: Kind.SEND_DATA_DONE,
+}
+
+
+class PacketError(DeviceError):
+    """Bytes that are no BirdNet packet."""
+
+
+@dataclass(frozen=True)
+class Packet:
+    """A header and its body."""
+
+    kind: int
+    sequence: int = 0
+    xtype: int = 0
+    """0 for the system, else a bird's address."""
+
+    body: bytes = b""
+    seconds: int = 0
+    milliseconds: int = 0
+    error: int = 0
+    error_extension: int = 0
+
+    def encode(self) -> bytes:
+        """The packet's bytes."""
+        head = HEADER.pack(
+            self.sequence, self.milliseconds, self.seconds, self.kind, self.xtype,
+            PROTOCOL, self.error, self.error_extension, len(self.body),
+        )  # fmt: skip
+        return head + self.body
+
+    @property
+    def stamp_s(self) -> float:
+        """The server's time [s], if the header's milliseconds belong to its seconds."""
+        return self.seconds + self.milliseconds / 1000.0
+
+
+def decode_packet(data: bytes | bytearray) -> tuple[Packet, int] | None:
+    """The packet at the start of some bytes, and its length; None where more bytes are needed.
+
+    Raises:
+        PacketError: The bytes begin no packet of this protocol.
+    """
+    if len(data) < HEADER.size:
+        return None
+    sequence, milli, seconds, kind, xtype, protocol, error, extension, size = HEADER.unpack_from(
+        data
+    )
+    if protocol != PROTOCOL or size > MOST_BODY:
+        raise PacketError(f"no BirdNet packet: protocol {protocol}, body of {size} bytes")
+    end = HEADER.size + size
+    if len(data) < end:
+        return None
+    body = bytes(data[HEADER.size : end])
+    return Packet(kind, sequence, xtype, body, seconds, milli, error, extension), end
+
+
+@dataclass(frozen=True)
+class SystemStatus:
+    """What the server says of itself and of all units."""
+
+    rate_hz: float
+    units: tuple[int, ...]
+    """Bits of each unit, from the first address on, as in the flock status."""
+
+    first: int = 1
+    flags: int = 0x08
+    error: int = 0
+    revision: int = 0
+
+    @property
+    def birds(self) -> tuple[int, ...]:
+        """Addresses of the units that are there and have a sensor."""
+        need = ACCESSIBLE | SENSOR
+        return tuple(
+            self.first + index for index, bits in enumerate(self.units) if bits & need == need
+        )
+
+    def encode(self) -> bytes:
+        """The status as a body."""
+        digits = f"{round(self.rate_hz * 1000.0):06d}".encode()
+        return SYSTEM_STATUS.pack(
+            self.flags, self.error, 1, 0, 0, digits, 0, len(self.units), self.first, self.revision
+        ) + bytes(self.units)
+
+
+def decode_system_status(body: bytes) -> SystemStatus:
+    """The status that a body holds.
+
+    Raises:
+        PacketError: It is too short, or its rate is no number.
+    """
+    if len(body) < SYSTEM_STATUS.size:
+        raise PacketError(f"system status of {len(body)} bytes; at least {SYSTEM_STATUS.size}")
+    flags, error, _, _, _, digits, _, count, first, revision = SYSTEM_STATUS.unpack_from(body)
+    units = body[SYSTEM_STATUS.size : SYSTEM_STATUS.size + count]
+    if not digits.isdigit() or len(units) < count:
+        raise PacketError(f"system status with rate {digits!r} and {len(units)} of {count} units")
+    return SystemStatus(int(digits) / 1000.0, tuple(units), first, flags, error, revision)
+
+
+@dataclass(frozen=True)
+class BirdStatus:
+    """One bird's setup, and the bytes of it that are left as they came."""
+
+    address: int
+    form: BirdFormat
+    range_inch: float
+    hemisphere: int = 0
+    report_every: int = 1
+    error: int = 0
+    raw: bytes = bytes(BIRD_STATUS_SIZE)
+
+    def encode(self) -> bytes:
+        """The status as a body."""
+        out = bytearray(self.raw)
+        out[4] = self.error
+        out[6] = self.form.words << 4 | self.form.code
+        out[7] = self.report_every
+        scaling = int.from_bytes(out[8:10], "big") & 0xF000 | int(self.range_inch) & 0x0FFF
+        out[8:10] = scaling.to_bytes(2, "big")
+        out[10] = self.hemisphere
+        out[11] = self.address
+        return bytes(out)
+
+
+def decode_bird_status(body: bytes) -> BirdStatus:
+    """The setup that a body holds.
+
+    Raises:
+        PacketError: It has another length, or a data format that no bird has.
+    """
+    if len(body) != BIRD_STATUS_SIZE:
+        raise PacketError(f"bird status of {len(body)} bytes; it has {BIRD_STATUS_SIZE}")
+    form = form_of(body[6] & 0x0F, body[6] >> 4)
+    scaling = int.from_bytes(body[8:10], "big") & 0x0FFF
+    return BirdStatus(body[11], form, float(scaling), body[10], body[7], body[4], bytes(body))
+
+
+def form_of(code: int, words: int) -> BirdFormat:
+    """The format of a code and a number of words.
+
+    Raises:
+        PacketError: There is none.
+    """
+    form = _BY_CODE.get(code)
+    if form is None or form.words != words:
+        raise PacketError(f"data format {code} with {words} words; no bird sends that")
+    return form
+
+
+def encode_data(birds: Mapping[int, tuple[BirdFormat, Sequence[int]]]) -> bytes:
+    """The body of a data packet: each bird's address, format and words."""
+    out = bytearray()
+    for address, (form, words) in birds.items():
+        out += bytes([address, form.code << 4 | form.words])
+        out += struct.pack(f">{form.words}h", *words)
+    return bytes(out)
+
+
+def decode_data(body: bytes) -> dict[int, tuple[BirdFormat, tuple[int, ...]]]:
+    """Format and words of each bird in a data packet.
+
+    Raises:
+        PacketError: A format is unknown, the body ends within a bird, or one stands twice.
+    """
+    out: dict[int, tuple[BirdFormat, tuple[int, ...]]] = {}
+    at = 0
+    while at < len(body):
+        if at + 2 > len(body):
+            raise PacketError("data end within a bird's head")
+        address, code = body[at], body[at + 1]
+        form = form_of(code >> 4, code & 0x0F)
+        at += 2
+        end = at + 2 * form.words
+        if end + 2 * bool(address & BUTTONS) > len(body):
+            raise PacketError(f"data end within bird {address & 0x7F}")
+        if address & 0x7F in out:
+            raise PacketError(f"bird {address & 0x7F} stands twice in a packet")
+        out[address & 0x7F] = form, struct.unpack(f">{form.words}h", body[at:end])
+        at = end + 2 * bool(address & BUTTONS)
+    return out
+
+
+def unit_bits(*, sensor: bool) -> int:
+    """Bits of a running unit: a bird with a sensor, or the controller."""
+    return ACCESSIBLE | RUNNING | (SENSOR if sensor else ERC | 0x01)
+
+
+def reply(command: Packet, **changes: Any) -> Packet:
+    """The response to a command: its sequence number and address, and the type that answers it."""
+    kind = RESPONSES.get(Kind(command.kind), Kind.UNKNOWN) if command.kind in _KINDS else 50
+    base = Packet(kind, command.sequence, command.xtype)
+    return replace(base, **changes)
+
+
+_BY_CODE = {each.code: each for each in FORMATS.values()}
+_KINDS = frozenset(int(each) for each in Kind)
+
 
 PORTS = {"tcp": 6000, "udp": 5000}
 REPLY_S = 1.0
@@ -85,14 +348,14 @@ class MotionStarTracker(LiveTracker):
         self._cycle = -1
         self._ask(Kind.STOP_DATA, needed=False)
         self._ask(Kind.WAKE_UP)
-        status = birdnet.decode_system_status(self._ask(Kind.GET_STATUS).body)
+        status = decode_system_status(self._ask(Kind.GET_STATUS).body)
         self._take_birds(status)
         self._ask(Kind.SEND_SETUP, body=replace(status, rate_hz=self._rate_hz).encode())
         for bird in self._birds:
             self._set_up(bird)
         self._ask(Kind.RUN_CONTINUOUS)
 
-    def _take_birds(self, status: birdnet.SystemStatus) -> None:
+    def _take_birds(self, status: SystemStatus) -> None:
         """The birds that are there, as many as the address says.
 
         Raises:
@@ -110,7 +373,7 @@ class MotionStarTracker(LiveTracker):
 
     def _set_up(self, bird: int) -> None:
         """Format and hemisphere of a bird, whose range the server says."""
-        setup = birdnet.decode_bird_status(self._ask(Kind.GET_STATUS, bird).body)
+        setup = decode_bird_status(self._ask(Kind.GET_STATUS, bird).body)
         if setup.error:
             raise self._address.error(error_text(setup.error, bird))
         self._ranges[bird] = replace(self._scaling, range_inch=setup.range_inch)
@@ -137,12 +400,12 @@ class MotionStarTracker(LiveTracker):
                 for index, packet in enumerate(packets):
                     if packet.sequence != self._sequence or packet.kind == Kind.DATA:
                         continue
-                    if packet.kind != birdnet.RESPONSES[kind]:
+                    if packet.kind != RESPONSES[kind]:
                         raise self._address.error(f"the server refuses {kind.name}")
                     self._early = packets[index + 1 :]
                     return packet
         if not needed:
-            return Packet(birdnet.RESPONSES[kind])
+            return Packet(RESPONSES[kind])
         raise DeviceLostError(f"{self._address.text}: no response to {kind.name}")
 
     def _packets(self, timeout_s: float) -> list[Packet]:
@@ -157,10 +420,10 @@ class MotionStarTracker(LiveTracker):
             if not self._is_stream:
                 self._buffer.clear()
             self._buffer += data
-            while (found := birdnet.decode_packet(self._buffer)) is not None:
+            while (found := decode_packet(self._buffer)) is not None:
                 out.append(found[0])
                 del self._buffer[: found[1]]
-        except birdnet.PacketError as error:
+        except PacketError as error:
             self.counts.dropped_bytes += len(self._buffer)
             if self._is_stream:
                 raise DeviceLostError(str(error)) from None
@@ -191,8 +454,8 @@ class MotionStarTracker(LiveTracker):
 
     def _frame(self, packet: Packet, now: float) -> list[Frame]:
         try:
-            data = birdnet.decode_data(packet.body)
-        except birdnet.PacketError:
+            data = decode_data(packet.body)
+        except PacketError:
             self.counts.refused_records += 1
             return []
         if not self._follows(packet.sequence):
@@ -224,3 +487,189 @@ class MotionStarTracker(LiveTracker):
         self._cycle += max(1, step)
         self.counts.lost_records += max(0, step - 1) * self._count
         return True
+
+
+RANGE_INCH = 144.0
+RATE_HZ = 103.3
+
+
+@dataclass(frozen=True)
+class ServerFaults:
+    """What goes wrong with what the server sends."""
+
+    lost_share: float = 0.0
+    """Share of the data packets that are lost."""
+
+    numbered: bool = True
+    """Whether data packets have sequence numbers of their own."""
+
+    error: int = 0
+    """Error code that it reports."""
+
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class SentPacket:
+    """The words of a data packet, by the birds' addresses."""
+
+    words: dict[int, tuple[int, ...]]
+    intact: bool
+
+
+class MotionStarSimulator(Simulator):
+    """A server with a controller as unit 1, and one bird a sensor of the motion from 2 on.
+
+    Args:
+        motion: What is measured.
+        faults: What goes wrong.
+        log: Where every data packet is kept, if anywhere.
+        port: Port for TCP and UDP; 0 takes a free one.
+    """
+
+    def __init__(
+        self,
+        motion: MotionSource,
+        faults: ServerFaults | None = None,
+        log: list[SentPacket] | None = None,
+        port: int = 0,
+    ) -> None:
+        super().__init__(motion, RATE_HZ)
+        self.port = port
+        self._faults = faults or ServerFaults()
+        self._log = log
+        self._random = random.Random(self._faults.seed)
+        self._birds = tuple(range(2, 2 + len(motion.sensors)))
+        self._listening: socket.socket | None = None
+        self._datagrams: socket.socket | None = None
+        self._client: socket.socket | None = None
+        self._peer: tuple[str, int] | None = None
+        self._forget()
+
+    def _forget(self) -> None:
+        self._setups = {
+            each: BirdStatus(each, FORMATS["pos_ang"], RANGE_INCH) for each in self._birds
+        }
+        self._rate_hz, self._sending, self._sequence = RATE_HZ, False, 0
+        self._buffer = bytearray()
+
+    @property
+    def place(self) -> str:
+        """The place in a device address."""
+        return f"127.0.0.1:{self.port}"
+
+    def _plug(self) -> None:
+        self._forget()
+        self._listening = socket.create_server(("127.0.0.1", self.port))
+        self.port = self._listening.getsockname()[1]
+        self._datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._datagrams.bind(("127.0.0.1", self.port))
+
+    def _unplug(self) -> None:
+        for connection in (self._listening, self._datagrams, self._client):
+            if connection is not None:
+                connection.close()
+        self._listening = self._datagrams = self._client = self._peer = None
+        self._sending = False
+
+    def _handles(self) -> list[int]:
+        every = (self._listening, self._datagrams, self._client)
+        return [each.fileno() for each in every if each is not None]
+
+    def _attend(self, ready: set[int]) -> None:
+        with suppress(OSError):
+            if self._listening is not None and self._listening.fileno() in ready:
+                self._client, _ = self._listening.accept()
+                self._client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                self._peer = None
+                self._buffer.clear()
+            elif self._client is not None and self._client.fileno() in ready:
+                self._hear(self._client)
+            if self._datagrams is not None and self._datagrams.fileno() in ready:
+                data, self._peer = self._datagrams.recvfrom(65536)
+                self._obey_all(bytearray(data))
+
+    def _hear(self, client: socket.socket) -> None:
+        data = client.recv(65536)
+        if not data:
+            client.close()
+            self._client, self._sending = None, False
+            return
+        self._buffer += data
+        self._obey_all(self._buffer)
+
+    def _obey_all(self, buffer: bytearray) -> None:
+        with suppress(PacketError):
+            while (found := decode_packet(buffer)) is not None:
+                del buffer[: found[1]]
+                self._send(self._obey(found[0]))
+
+    def _send(self, packet: Packet) -> None:
+        with suppress(OSError):
+            if self._peer is not None and self._datagrams is not None:
+                self._datagrams.sendto(packet.encode(), self._peer)
+            elif self._client is not None:
+                self._client.sendall(packet.encode())
+
+    def _obey(self, packet: Packet) -> Packet:
+        """The response to a command."""
+        known = packet.xtype == 0 or packet.xtype in self._setups
+        if packet.kind not in RESPONSES or not known:
+            return Packet(Kind.UNKNOWN, packet.sequence, packet.xtype)
+        if packet.kind == Kind.GET_STATUS:
+            return reply(packet, body=self._status(packet.xtype))
+        if packet.kind == Kind.SEND_SETUP:
+            return self._set_up(packet)
+        if packet.kind in (Kind.RUN_CONTINUOUS, Kind.STOP_DATA, Kind.SHUT_DOWN):
+            self._sending = packet.kind == Kind.RUN_CONTINUOUS
+            self._sequence = packet.sequence
+        if packet.kind == Kind.SINGLE_SHOT:
+            return reply(packet, body=self._data(time.monotonic()))
+        return reply(packet)
+
+    def _status(self, bird: int) -> bytes:
+        if bird:
+            return self._setups[bird].encode()
+        units = (
+            unit_bits(sensor=False),
+            *[unit_bits(sensor=True)] * len(self._birds),
+        )
+        flags = 0x0C | 0x80 * self._sending | 0x40 * bool(self._faults.error)
+        return SystemStatus(self._rate_hz, units, 1, flags, self._faults.error).encode()
+
+    def _set_up(self, packet: Packet) -> Packet:
+        try:
+            if packet.xtype == 0:
+                self._rate_hz = decode_system_status(packet.body).rate_hz or RATE_HZ
+            else:
+                setup = decode_bird_status(packet.body)
+                self._setups[packet.xtype] = replace(setup, range_inch=RANGE_INCH)
+        except PacketError:
+            return Packet(Kind.ILLEGAL, packet.sequence, packet.xtype)
+        return reply(packet)
+
+    def _words(self, at_s: float) -> dict[int, tuple[int, ...]]:
+        positions, orientations = self._poses(at_s)
+        return {
+            bird: words_of_pose(position, turn, self._setups[bird].form, Scaling(RANGE_INCH))
+            for bird, position, turn in zip(self._birds, positions, orientations, strict=True)
+        }
+
+    def _data(self, at_s: float) -> bytes:
+        words = self._words(at_s)
+        return encode_data({b: (self._setups[b].form, w) for b, w in words.items()})
+
+    def _measure(self, at_s: float) -> None:
+        every = self._setups[self._birds[0]].report_every
+        if not self._sending or self._cycle % max(1, every):
+            return
+        self._sequence = (self._sequence + self._faults.numbered) % 0x10000
+        words = self._words(at_s)
+        body = encode_data({b: (self._setups[b].form, w) for b, w in words.items()})
+        intact = self._random.random() >= self._faults.lost_share
+        if self._log is not None:
+            self._log.append(SentPacket(words, intact))
+        if intact:
+            since_s = at_s - self._start_s
+            seconds, milli = int(since_s), int(since_s % 1.0 * 1000.0)
+            self._send(Packet(Kind.DATA, self._sequence, 0, body, seconds, milli))

@@ -2,15 +2,17 @@
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Protocol, Self
+from urllib.parse import unquote
 
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.errors import DeviceError
+from capar.model.capture import NAME
+from capar.model.errors import DeviceError, UnknownNameError
 
 RETRY_S = 0.5
 """Pause between two attempts to reach a device that went away [s]."""
@@ -245,3 +247,260 @@ class LiveTracker(ABC):
     @abstractmethod
     def _read(self, timeout_s: float) -> list[Frame]:
         """The frames that come within a wait [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class SensorReading:
+    """One sensor's pose in one cycle."""
+
+    index: int
+    """Row of the sensor in a frame."""
+
+    host_s: float
+    position: np.ndarray
+    orientation: np.ndarray
+    device_s: float | None = None
+
+
+class CycleCounter:
+    """Numbers the measuring cycles of records that carry no number, but come in order.
+
+    A record follows the one before; where bytes were dropped, as many are taken to be missing as
+    the bytes are of, to the nearest that the order of the sensors allows. Time is not asked: a
+    busy computer reads late.
+
+    Args:
+        sensors: How many send in turn.
+    """
+
+    def __init__(self, sensors: int) -> None:
+        self._sensors = sensors
+        self._place = -1
+        self._is_started = False
+
+    def start(self, cycle: int, index: int) -> int:
+        """Begin with a record of a sensor in a cycle."""
+        self._place, self._is_started = cycle * self._sensors + index, True
+        return cycle
+
+    @property
+    def started(self) -> bool:
+        """Whether a record was numbered."""
+        return self._is_started
+
+    def cycle_of(self, index: int, *, missed: int) -> int:
+        """The cycle of the next record, of a sensor."""
+        if not self.started:
+            return self.start(0, index)
+        cycle = round((self._place + 1 + missed - index) / self._sensors)
+        while cycle * self._sensors + index <= self._place:
+            cycle += 1
+        return self.start(cycle, index)
+
+
+@dataclass
+class _Partial:
+    readings: dict[int, SensorReading] = field(default_factory=dict)
+
+
+class FrameCollector:
+    """Makes frames of the readings of numbered cycles.
+
+    Args:
+        sensors: How many there are.
+        counts: Where lost records are counted.
+        ahead: How many newer cycles are begun before an incomplete one is given as it is, though
+            some sensor has not got past it.
+        counted: Whether cycles are equally long, so that frames bear their numbers.
+    """
+
+    def __init__(
+        self, sensors: int, counts: Counts, *, ahead: int = 0, counted: bool = True
+    ) -> None:
+        self._sensors = sensors
+        self._counts = counts
+        self._ahead = ahead
+        self._counted = counted
+        self._partial: dict[int, _Partial] = {}
+        self._given = -1
+        self._newest = [-1] * sensors
+
+    def start_after(self, cycle: int) -> None:
+        """Count from a cycle on; nothing before it is missing."""
+        self._partial.clear()
+        self._newest = [cycle] * self._sensors
+        self._given = cycle
+
+    def add(self, cycle: int, reading: SensorReading) -> list[Frame]:
+        """The frames that a reading completes, or shows to be incomplete."""
+        if cycle <= self._given:
+            self._counts.refused_records += 1
+            return []
+        self._counts.records += 1
+        self._partial.setdefault(cycle, _Partial()).readings[reading.index] = reading
+        self._newest[reading.index] = max(cycle, self._newest[reading.index])
+        passed = max(min(self._newest), max(self._newest) - self._ahead - 1)
+        done = [
+            each
+            for each, partial in self._partial.items()
+            if len(partial.readings) == self._sensors or each <= passed
+        ]
+        return self._give(max(done)) if done else []
+
+    def flush(self) -> list[Frame]:
+        """The frames that were begun."""
+        return self._give(max(self._partial)) if self._partial else []
+
+    def _give(self, last: int) -> list[Frame]:
+        """Every frame begun up to a cycle."""
+        out = []
+        for cycle in sorted(each for each in self._partial if each <= last):
+            readings = list(self._partial.pop(cycle).readings.values())
+            missing = self._sensors - len(readings)
+            self._counts.lost_records += missing + self._sensors * (cycle - self._given - 1)
+            self._given = cycle
+            out.append(frame_of(readings, self._sensors, cycle=cycle if self._counted else None))
+        return out
+
+
+def frame_of(readings: Sequence[SensorReading], sensors: int, *, cycle: int | None = None) -> Frame:
+    """The frame of some sensors' readings; the others are NaN."""
+    positions, orientations = np.full((sensors, 3), np.nan), np.full((sensors, 4), np.nan)
+    for reading in readings:
+        positions[reading.index] = reading.position
+        orientations[reading.index] = reading.orientation
+    first = min(readings, key=lambda each: each.host_s)
+    return Frame(first.host_s, first.device_s, positions, orientations, cycle)
+
+
+FLAGS = {"yes": True, "no": False}
+
+
+@dataclass(frozen=True)
+class Address:
+    """A driver's name, where its device is, and options; each option is asked for once."""
+
+    text: str
+    kind: str
+    place: str
+    options: Mapping[str, str]
+    _asked: set[str] = field(default_factory=set, repr=False, compare=False)
+
+    def text_of(self, name: str, default: str) -> str:
+        """An option as text."""
+        self._asked.add(name)
+        return self.options.get(name, default)
+
+    def choice(self, name: str, known: Iterable[str], default: str) -> str:
+        """An option that is one of some words.
+
+        Raises:
+            UnknownNameError: It is another.
+        """
+        given, names = self.text_of(name, default), list(known)
+        if given not in names:
+            raise UnknownNameError(name, given, names, where=self.text)
+        return given
+
+    def flag(self, name: str, *, default: bool) -> bool:
+        """An option that is ``yes`` or ``no``.
+
+        Raises:
+            UnknownNameError: It is something else.
+        """
+        return FLAGS[self.choice(name, FLAGS, "yes" if default else "no")]
+
+    def number(self, name: str, default: float, *, low: float, high: float) -> float:
+        """An option that is a number within bounds, which belong to it.
+
+        Raises:
+            DeviceError: It is no number, or lies outside.
+        """
+        given = self.text_of(name, str(default))
+        try:
+            value = float(given)
+        except ValueError:
+            raise self.error(f"{name}={given} is no number") from None
+        if not low <= value <= high:
+            raise self.error(f"{name}={given}; it lies between {low:g} and {high:g}")
+        return value
+
+    def integer(self, name: str, default: int, *, low: int, high: int) -> int:
+        """An option that is a whole number within bounds, which belong to it.
+
+        Raises:
+            DeviceError: It is none, or lies outside.
+        """
+        value = self.number(name, default, low=low, high=high)
+        if value != int(value):
+            raise self.error(f"{name}={self.options[name]} is no whole number")
+        return int(value)
+
+    def names(self, default: Iterable[str]) -> tuple[str, ...]:
+        """The sensors' names: the option ``names``, as many as there are sensors.
+
+        Raises:
+            DeviceError: There are more or fewer, one is given twice, or it is no name.
+        """
+        usual = tuple(default)
+        given = tuple(self.text_of("names", ",".join(usual)).split(","))
+        if len(given) != len(usual):
+            raise self.error(f"names= lists {len(given)} names; there are {len(usual)} sensors")
+        for name in given:
+            if not NAME.fullmatch(name):
+                rule = "begin with a lower-case letter and hold letters, digits and underscores"
+                raise self.error(f"sensor name {name!r}: names {rule}")
+        if len(set(given)) < len(given):
+            raise self.error("names= lists a name twice")
+        return given
+
+    def host_port(self, port: int) -> tuple[str, int]:
+        """The place as ``HOST`` or ``HOST:PORT``.
+
+        Raises:
+            DeviceError: It is neither.
+        """
+        host, colon, digits = self.place.rpartition(":")
+        if not colon:
+            return self.place, port
+        if not host or not digits.isascii() or not digits.isdigit() or not 0 < int(digits) < 65536:
+            raise self.error(f"{self.place!r} is no HOST or HOST:PORT")
+        return host, int(digits)
+
+    def close(self) -> None:
+        """Refuse options that nothing asked for.
+
+        Raises:
+            UnknownNameError: There is one.
+        """
+        for name in self.options:
+            if name not in self._asked:
+                raise UnknownNameError("option", name, self._asked, where=self.text)
+
+    def error(self, problem: str) -> DeviceError:
+        """An error that names this address."""
+        return DeviceError(f"{self.text}: {problem}")
+
+
+def parse_address(text: str) -> Address:
+    """The address that a text holds.
+
+    Raises:
+        DeviceError: It has no driver, no place, an option without a value, or one twice.
+    """
+    kind, colon, rest = text.partition(":")
+    place, _, query = rest.partition("?")
+    if not colon or not kind or not place:
+        raise DeviceError(
+            f"{text!r} is no device address; it is DRIVER:PLACE?OPTION=VALUE&..., "
+            "like flock:/dev/ttyUSB0?birds=2"
+        )
+    options: dict[str, str] = {}
+    for part in query.split("&") if query else ():
+        name, equals, value = part.partition("=")
+        if not equals or not name or not value:
+            raise DeviceError(f"{text}: option {part!r} is not of the form NAME=VALUE")
+        if name in options:
+            raise DeviceError(f"{text}: option {name!r} is given twice")
+        options[name] = unquote(value)
+    return Address(text, kind, place, options)

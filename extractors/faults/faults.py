@@ -1,17 +1,313 @@
 """All faults that a recording shows by itself, as notices with the likely remedy."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
 
-from capar.model.capture import Capture
-from capar.model.notices import Notice
-from extractors.bodies.bodies import Bodies
+import numpy as np
+from jaxtyping import Bool, Float
+
+from capar.model import geometry
+from capar.model.capture import UNITS, Capture, Conventions, Sensor, TagType
+from capar.model.notices import Notice, notice
+from extractors.bodies.bodies import Bodies, BodyGeometry
+from extractors.bodies.poses import rotation_matrices
 from extractors.contact.contacts import Contact
-from extractors.faults.gravity import gravity_notices
-from extractors.faults.person_size import is_sized, shape_notices, size_notices
-from extractors.faults.rests import rest_notices
-from extractors.faults.sides import side_notices
-from extractors.signals.intervals import Interval
+from extractors.faults.gravity import gravity_notices, unit_name
+from extractors.signals.intervals import Interval, mask
 from extractors.thresholds import Thresholds
+
+TRUNK = ("head", "neck", "chest", "torso", "spine", "pelvis")
+"""End-effectors of the trunk, in which a person's size shows with a hand or a foot."""
+
+LIMBS = ("hand", "foot")
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """How far two sensors of one person come apart."""
+
+    first: str
+    second: str
+    largest_m: float
+    at_s: float
+    least_m: float
+    """A person of any size has more; zero where nothing is known."""
+
+
+def reaches(capture: Capture, thresholds: Thresholds) -> list[Reach]:
+    """The largest distance of each two sensors of a person through a recording, by name."""
+    found = []
+    for first, second in combinations(capture.sensors, 2):
+        if capture.agent_of(first) != capture.agent_of(second):
+            continue
+        apart = np.linalg.norm(first.stream.positions - second.stream.positions, axis=1)
+        if np.isnan(apart).all():
+            continue
+        frame = int(np.nanargmax(apart))
+        least = _least(first, second, thresholds)
+        at_s = float(capture.times[frame])
+        found.append(Reach(first.name, second.name, float(apart[frame]), at_s, least))
+    return found
+
+
+def _least(first: Sensor, second: Sensor, thresholds: Thresholds) -> float:
+    kinds = {first.end_effector, second.end_effector}
+    if not (kinds & set(TRUNK) and kinds & set(LIMBS)):
+        return 0.0
+    standing = "head" in kinds and "foot" in kinds
+    return thresholds.head_to_foot_m if standing else thresholds.trunk_to_limb_m
+
+
+def is_sized(capture: Capture, thresholds: Thresholds) -> bool:
+    """Whether sensors on trunk and limbs show that people have the size of people."""
+    found = [each for each in reaches(capture, thresholds) if each.least_m]
+    most = thresholds.person_most_m
+    return bool(found) and all(each.least_m <= each.largest_m <= most for each in found)
+
+
+def size_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
+    """A notice if people are too small or too large, or each sensor alone is too fast."""
+    found = reaches(capture, thresholds)
+    wrong = [
+        each
+        for each in found
+        if each.largest_m > thresholds.person_most_m or each.largest_m < each.least_m
+    ]
+    if wrong:
+        worst = max(wrong, key=lambda each: each.largest_m)
+        yield notice(
+            "unit-contradicted", worst.first, worst.second, start_s=worst.at_s, end_s=worst.at_s,
+            shown="person", size_m=float(f"{worst.largest_m:.3g}"),
+            **_remedy(capture, worst, thresholds),
+        )  # fmt: skip
+    yield from _fast_notices(capture, found, thresholds)
+
+
+def _remedy(capture: Capture, reach: Reach, thresholds: Thresholds) -> dict[str, str]:
+    how = capture.conventions.get(reach.first, Conventions())
+    usual = thresholds.head_to_foot_usual_m
+    if reach.least_m != thresholds.head_to_foot_m:
+        usual = thresholds.trunk_to_limb_usual_m
+    return {"unit": likely_unit(reach.largest_m / how.unit_m, usual), "declared": unit_name(how)}
+
+
+def likely_unit(length: float, usual_m: float) -> str:
+    """The unit in which a length is nearest to a usual one; m, cm and mm before others.
+
+    Args:
+        length: In the unknown unit.
+        usual_m: What it usually is [m].
+    """
+    off = {name: abs(np.log(length * metres / usual_m)) for name, metres in UNITS.items()}
+    common = min(("m", "cm", "mm"), key=off.__getitem__)
+    return common if off[common] < np.log(NEAR) else min(off, key=off.__getitem__)
+
+
+NEAR = 2.5
+"""A length is one of a person's if it is nearer to the usual one than by this factor [1]."""
+
+
+def _fast_notices(capture: Capture, found: list[Reach], thresholds: Thresholds) -> Iterator[Notice]:
+    """A sensor alone that is faster than any hand for a good part of the time."""
+    if found:
+        return
+    for sensor in capture.sensors:
+        steps = np.linalg.norm(np.diff(sensor.stream.positions, axis=0), axis=1)
+        speeds = steps / np.diff(capture.times)
+        if np.isnan(speeds).all():
+            continue
+        usual = float(np.nanquantile(speeds, thresholds.speed_quantile))
+        if usual > thresholds.hand_most_mps:
+            how = capture.conventions.get(sensor.name, Conventions())
+            unit = likely_unit(usual / how.unit_m, thresholds.hand_usual_mps)
+            yield notice(
+                "unit-contradicted", sensor.name, shown="speed", unit=unit,
+                declared=unit_name(how), speed_mps=float(f"{usual:.3g}"),
+            )  # fmt: skip
+
+
+def shape_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
+    """Mobile objects whose shapes nobody could handle or see."""
+    for thing in capture.objects:
+        if thing.tag is not TagType.MOBILE or thing.shape is None:
+            continue
+        size = float(thing.shape.size.max())
+        if not thresholds.thing_least_m <= size <= thresholds.thing_most_m:
+            yield notice(
+                "shape-size", thing.name, size_m=float(f"{size:.3g}"),
+                unit=likely_unit(size, thresholds.thing_usual_m),
+                shape=thing.shape.description,
+            )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """A stay of a thing that nobody holds, against one other body."""
+
+    thing: str
+    other: str
+    interval: Interval
+    toward: Float[np.ndarray, "3"]
+    """From the other body to the thing, along an axis of the world."""
+
+    height_m: float
+
+
+def rest_notices(
+    capture: Capture,
+    bodies: Bodies,
+    touches: Sequence[Contact],
+    motions: Mapping[str, list[Interval]],
+    thresholds: Thresholds,
+) -> Iterator[Notice]:
+    """A notice if things that are moved by hand rest against other bodies, and none on one.
+
+    Under another body one rest is enough, of a thing that is moved; a lamp or a picture is not.
+    Beside another body it takes several rests against one side at different heights: what leans
+    on a wall stands on one floor.
+    """
+    rests = [
+        rest
+        for thing in capture.objects
+        if thing.tag is TagType.MOBILE and motions.get(thing.name)
+        for rest in _rests(capture, bodies, thing.name, touches, motions[thing.name], thresholds)
+    ]
+    if not rests or any(rest.toward[2] > 0.0 for rest in rests):
+        return
+    counts = Counter(tuple(map(float, rest.toward)) for rest in rests)
+    common, count = counts.most_common(1)[0]
+    rests = [rest for rest in rests if tuple(map(float, rest.toward)) == common]
+    if count < thresholds.rest_share * counts.total():
+        return
+    under = common[2] < 0.0
+    heights = [rest.height_m for rest in rests]
+    if not under and (len(rests) < 2 or np.ptp(heights) < thresholds.level_apart_m):
+        return
+    rest = max(rests, key=lambda each: each.interval[1] - each.interval[0])
+    how = capture.conventions.get(rest.thing, Conventions())
+    yield notice(
+        "up-contradicted",
+        rest.thing,
+        rest.other,
+        start_s=float(capture.times[rest.interval[0]]),
+        end_s=float(capture.times[rest.interval[1]]),
+        shown="rest",
+        where="under" if under else "at the side of",
+        up=how.axis(rest.toward) or "",
+        declared=how.up,
+    )
+
+
+def _rests(
+    capture: Capture,
+    bodies: Bodies,
+    name: str,
+    touches: Sequence[Contact],
+    motions: list[Interval],
+    thresholds: Thresholds,
+) -> Iterator[Rest]:
+    """Each long stay of a thing against each body that it touches meanwhile; none if it is held."""
+    thing = bodies.objects[name]
+    if thing.shape is None:
+        return
+    met = _met(capture, name, touches)
+    known = ~mask(motions, len(capture.times)) & ~thing.poses.lost
+    for first, last in geometry.runs(known & ~met.pop("")):
+        if capture.times[last] - capture.times[first] < thresholds.long_rest_s:
+            continue
+        middle = (first + last) // 2
+        for other, meeting in met.items():
+            toward = _toward(thing, bodies.named(other), middle, thresholds)
+            through = bool(meeting[first : last + 1].all())
+            if toward is not None and (through or (toward[2] > 0.0 and meeting[middle])):
+                height_m = float(thing.middles[middle, 2])
+                yield Rest(name, other, (first, last), toward, height_m)
+
+
+def _met(
+    capture: Capture, name: str, touches: Sequence[Contact]
+) -> dict[str, Bool[np.ndarray, "frames"]]:
+    """In which frames a thing touches each other one; under no name, the body of a person."""
+    persons = {each.name for each in capture.sensors}
+    persons |= {each.name for each in capture.objects if each.tag is TagType.SELF}
+    met = {"": np.zeros(len(capture.times), dtype=bool)}
+    for touch in touches:
+        if name in (touch.first, touch.second):
+            other = touch.second if touch.first == name else touch.first
+            key = "" if other in persons else other
+            first, last = touch.interval
+            met.setdefault(key, np.zeros(len(capture.times), dtype=bool))[first : last + 1] = True
+    return met
+
+
+def _toward(
+    thing: BodyGeometry, other: BodyGeometry, frame: int, thresholds: Thresholds
+) -> Float[np.ndarray, "3"] | None:
+    """The axis along which a thing is beyond another's box; upward where it is inside of it."""
+    (low, high), (floor, top) = thing.boxes, other.boxes
+    gaps = np.concatenate([low[frame] - top[frame], floor[frame] - high[frame]])
+    if np.isnan(gaps).any():
+        return None
+    best = int(np.argmax(gaps))
+    if gaps[best] < -thresholds.box_overlap_m:
+        return np.array([0.0, 0.0, 1.0])
+    return np.eye(3)[best % 3] * (1.0 if best < 3 else -1.0)
+
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def side_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
+    """A notice for each person whose pairs of right and left are exchanged nearly always.
+
+    It may be the names, the declared direction of sight, or a world that is a mirror image.
+    """
+    for head in capture.sensors:
+        if head.end_effector != "head":
+            continue
+        votes = [
+            (right, left, _sides(head, right, left, thresholds))
+            for right in capture.sensors
+            if (left := _other(capture, head, right))
+        ]
+        exchanged = sum(int((sides < 0.0).sum()) for *_, sides in votes)
+        shown = sum(len(sides) for *_, sides in votes)
+        least = thresholds.shown_share * len(capture.times)
+        if shown and shown >= least and exchanged >= thresholds.exchanged_share * shown:
+            right, left, _ = max(votes, key=lambda vote: len(vote[2]))
+            share = round(exchanged / shown, 3)
+            yield notice("sides-exchanged", right.name, left.name, head.name, share=share)
+
+
+def _other(capture: Capture, head: Sensor, right: Sensor) -> Sensor | None:
+    """The left sensor of a right one's kind, of the person whose head it is."""
+    agent = capture.agent_of(head)
+    if right.side != "right" or capture.agent_of(right) != agent:
+        return None
+    alike = (
+        each
+        for each in capture.sensors
+        if each.side == "left"
+        and each.end_effector == right.end_effector
+        and capture.agent_of(each) == agent
+    )
+    return next(alike, None)
+
+
+def _sides(
+    head: Sensor, right: Sensor, left: Sensor, thresholds: Thresholds
+) -> Float[np.ndarray, "some"]:
+    """How far the right one is on the right of the left one in the frames that show it [m]."""
+    ahead = rotation_matrices(head.stream.orientations) @ np.asarray(head.gaze)
+    rightward = np.cross(ahead / np.linalg.norm(head.gaze), UP)
+    level = np.linalg.norm(rightward, axis=1)
+    apart = right.stream.positions - left.stream.positions
+    with np.errstate(invalid="ignore", divide="ignore"):
+        aside = np.einsum("ij,ij->i", apart, rightward) / level
+        wide = np.abs(aside) > thresholds.apart_share * np.linalg.norm(apart, axis=1)
+        return np.asarray(aside[wide & (level > thresholds.level_gaze)])
 
 
 def faults(

@@ -1,17 +1,189 @@
-"""What gravity contradicts: the declared upward axis, the unit of length, the rate."""
+"""Free flight of bodies, and what gravity contradicts: the upward axis, the unit, the rate."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from enum import Enum, auto
+from functools import lru_cache
 
 import numpy as np
+from jaxtyping import Bool, Float
+from scipy.ndimage import correlate1d
 
+from capar.model import geometry
 from capar.model.capture import Capture, Conventions
 from capar.model.notices import Notice, notice
-from extractors.bodies.bodies import Bodies
-from extractors.faults.free_flight import Flight, flights
-from extractors.faults.person_size import unit_name
-from extractors.motion.impacts import GRAVITY_MPS2
+from extractors.bodies.bodies import Bodies, BodyGeometry
+from extractors.motion.impacts import GRAVITY_MPS2, recorded_middles
+from extractors.signals.filters import JITTER
+from extractors.signals.intervals import Interval, time_step
 from extractors.thresholds import Thresholds
+
+WINDOWS = (9, 13, 17, 25, 33, 49, 65)
+"""Lengths of the windows in which a parabola is fitted [frames]: a flight of a third of a second
+at 30 to 240 Hz."""
+
+Places = Float[np.ndarray, "frames 3"]
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """A body at constant acceleration that no sensor goes along with."""
+
+    body: str
+    first: int
+    last: int
+    acceleration: Float[np.ndarray, "3"]
+    """In the world [m/s^2]."""
+
+    curved: bool
+    """Whether it also went across its acceleration, or turned back: no straight descent."""
+
+
+def flights(
+    body: BodyGeometry, others: Iterable[BodyGeometry], thresholds: Thresholds
+) -> Iterator[Flight]:
+    """Where a body flies freely, by its recorded path alone.
+
+    A frame belongs to a flight if a parabola fits the path about it, neither noise nor a change
+    of acceleration being more than a share of its bend. The acceleration stays the same through
+    the flight, the body gains speed along it in the end, and no sensor goes along.
+
+    Args:
+        body: The body, known by the middle of its box.
+        others: The sensors.
+        thresholds: Shares and lengths that decide.
+    """
+    times = body.poses.filled.times
+    if body.poses.still or body.poses.fixed is not None:
+        return
+    places = recorded_middles(body, slice(None))
+    carriers = [each.poses.filled.positions for each in others if each.name != body.name]
+    noise_m = max(body.poses.noise.position_m, thresholds.flight_noise_m)
+    for first, last in geometry.runs(~np.isnan(places[:, 0])):
+        known = slice(first, last + 1)
+        if last - first + 1 < WINDOWS[0] or _uneven(times[known]):
+            continue
+        for begin, end in _parabolic(places[known], noise_m, thresholds):
+            span = first + begin, first + end
+            found = _flight(body.name, places, times, span, noise_m, thresholds)
+            if found and not any(
+                goes_along(places, carrier, slice(found.first, found.last + 1), thresholds)
+                for carrier in carriers
+            ):
+                yield found
+
+
+def goes_along(places: Places, carrier: Places, frames: slice, thresholds: Thresholds) -> bool:
+    """Whether a carrier keeps its distance from a body, compared with how far the body goes."""
+    way = np.linalg.norm(places[frames] - places[frames.start], axis=1)
+    apart = np.linalg.norm(places[frames] - carrier[frames], axis=1)
+    return not np.isnan(apart).all() and bool(
+        np.nanmax(apart) - np.nanmin(apart) < thresholds.flight_along_share * way.max()
+    )
+
+
+def _uneven(times: Float[np.ndarray, "frames"]) -> bool:
+    return bool(np.abs(np.diff(times) / time_step(times) - 1.0).max() > JITTER)
+
+
+def _flight(
+    name: str,
+    places: Places,
+    times: Float[np.ndarray, "frames"],
+    span: Interval,
+    noise_m: float,
+    thresholds: Thresholds,
+) -> Flight | None:
+    """The flight of a stretch; None if its acceleration changes, or it gains no speed along it."""
+    first, last = span
+    rim = round(thresholds.flight_rim_share * (last - first))
+    frames = slice(first + rim, last - rim + 1)
+    clock = times[frames] - times[frames.start]
+    if not _even(places[frames], clock, noise_m, thresholds):
+        return None
+    (bend, begin, _), *_ = np.linalg.lstsq(
+        np.stack([0.5 * clock**2, clock, np.ones_like(clock)], axis=1), places[frames], rcond=None
+    )
+    pull = float(np.linalg.norm(bend))
+    along = bend / pull
+    gained = pull * float(clock[-1])
+    before = float(begin @ along)
+    if before + gained < thresholds.flight_gain_share * gained:
+        return None
+    across = float(np.linalg.norm(begin - before * along))
+    turned = before < -thresholds.flight_across_share * gained
+    curved = across >= thresholds.flight_across_share * gained
+    return Flight(name, first, last, bend, turned or curved)
+
+
+def _even(
+    places: Places, clock: Float[np.ndarray, "frames"], noise_m: float, thresholds: Thresholds
+) -> bool:
+    """Whether acceleration is even through a whole flight: no cubic and no quartic term."""
+    powers = np.stack([(clock / clock[-1]) ** power for power in range(5)], axis=1)
+    basis, _ = np.linalg.qr(powers)
+    terms = np.linalg.norm(basis.T @ places, axis=1)
+    allowed_m = thresholds.flight_even_share * terms[2] + thresholds.flight_even_sigmas * noise_m
+    return bool(terms[3] <= allowed_m and terms[4] <= allowed_m)
+
+
+def _parabolic(places: Places, noise_m: float, thresholds: Thresholds) -> Iterator[Interval]:
+    """Stretches of a path through which its acceleration is the same.
+
+    Of two that overlap, the one found by a wider window counts, or else the longer one.
+    """
+    taken = np.zeros(len(places), dtype=bool)
+    for width in reversed([each for each in WINDOWS if each <= len(places)]):
+        bend, fits = _bends(places, width, noise_m, thresholds)
+        found = sorted(_steady(bend, fits, width, thresholds), key=lambda run: run[0] - run[1])
+        for first, last in found:
+            reach = slice(first - width // 2, last + width // 2 + 1)
+            if not taken[reach].any():
+                taken[reach] = True
+                yield reach.start, reach.stop - 1
+
+
+def _bends(
+    places: Places, width: int, noise_m: float, thresholds: Thresholds
+) -> tuple[Places, Bool[np.ndarray, "frames"]]:
+    """The square term of a cubic fitted about each frame, and where it is all that there is."""
+    basis = _polynomials(width)
+    centred = places - places.mean(axis=0)
+    terms = [correlate1d(centred, each, axis=0, mode="nearest") for each in basis]
+    bend = np.linalg.norm(terms[2], axis=1)
+    change = np.linalg.norm(terms[3], axis=1)
+    energy = width * correlate1d(centred**2, np.full(width, 1.0 / width), axis=0, mode="nearest")
+    left = (energy - sum(each**2 for each in terms)).sum(axis=1)
+    misfit = np.sqrt(np.maximum(left, 0.0))
+    allowed_m = thresholds.flight_noise_sigmas * noise_m * np.sqrt(3.0 * (width - len(basis)))
+    fits = bend >= thresholds.flight_bend_sigmas * noise_m
+    fits &= change <= thresholds.flight_change_share * bend
+    fits &= misfit <= thresholds.flight_change_share * bend + allowed_m
+    fits[: width // 2] = False
+    fits[len(fits) - width // 2 :] = False
+    return np.asarray(terms[2]), fits
+
+
+def _steady(
+    bend: Places, fits: Bool[np.ndarray, "frames"], width: int, thresholds: Thresholds
+) -> Iterator[Interval]:
+    """The runs of fitting frames in which the bend is the same."""
+    for first, last in geometry.runs(fits):
+        middle = np.median(bend[first : last + 1], axis=0)
+        off = np.linalg.norm(bend[first : last + 1] - middle, axis=1)
+        same = off <= thresholds.flight_change_share * float(np.linalg.norm(middle))
+        for begin, end in geometry.runs(same):
+            if end - begin + 1 >= max(3, round(thresholds.flight_steady_share * width)):
+                yield first + begin, first + end
+
+
+@lru_cache
+def _polynomials(width: int) -> Sequence[Float[np.ndarray, "width"]]:
+    """Polynomials of degree 0 to 3 over a window, orthonormal."""
+    index = np.arange(width) - width // 2
+    square, _ = np.linalg.qr(np.stack([index.astype(float) ** power for power in range(4)], axis=1))
+    return tuple(square.T)
+
 
 DOWN = np.array([0.0, 0.0, -1.0])
 
@@ -107,3 +279,8 @@ def _notices(
             acceleration_mps2=float(f"{size:.3g}"), rate_hz=float(f"{rate_hz:.3g}"),
             declared_hz=float(f"{capture.rate_hz:.6g}"),
         )  # fmt: skip
+
+
+def unit_name(how: Conventions) -> str:
+    """The name of the unit that a file was read in."""
+    return how.unit(1.0, 1e-6) or f"{how.unit_m:g} m"

@@ -11,7 +11,7 @@ from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.point_fitting import SkeletonError, fit_skeleton, measures_from_points
 from capar.model.errors import UnknownNameError
-from extractors.readers.body_names.conventions import (
+from extractors.readers.names import (
     ConventionError,
     convention,
     conventions,

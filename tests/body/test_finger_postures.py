@@ -9,7 +9,7 @@ from capar.body.fit_warnings import closed_hands
 from capar.body.human import Human
 from capar.body.sensor_fitting import Fit
 from capar.model import geometry
-from extractors.readers.body_names.body_names import BodyName
+from extractors.readers.names import BodyName
 
 HUMAN = Human.of(ready_made("woman"))
 FRAMES = 5

@@ -21,7 +21,7 @@ from capar.body.sensor_fitting import Fit
 from capar.model.capture import Capture
 from capar.model.notices import notice
 from capar.views.viewer.stage import stage, with_mannequin
-from extractors.readers.body_names.body_names import BodyName
+from extractors.readers.names import BodyName
 
 CAPTURE = motions.drink_from_mug(motions.WOMAN).capture
 BARE = replace(CAPTURE, objects=())

@@ -19,10 +19,9 @@ from capar.cli import app
 from capar.model import geometry
 from capar.views.viewer.snapshot import snapshot
 from capar.views.viewer.stage import stage, with_mannequin
-from extractors.readers.body_names.body_names import BodyName, body_names, parts
-from extractors.readers.body_names.conventions import conventions
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.drafting.draft import draft
+from extractors.readers.names import BodyName, body_names, conventions, parts
 from extractors.readers.registry import read_recording
 
 DATA = Path(os.environ.get("CAPAR_DATA", Path(__file__).parents[3] / "shared" / "data"))

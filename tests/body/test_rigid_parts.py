@@ -13,9 +13,8 @@ from capar.body.human import Human
 from capar.body.joint_fitting import fit_joints, rigid_places, rigid_shape
 from capar.body.point_fitting import SkeletonFit
 from capar.model import geometry
-from extractors.readers.body_names.body_names import SIDES
-from extractors.readers.body_names.conventions import convention
 from extractors.readers.bundle.capture_toml import read_capture
+from extractors.readers.names import SIDES, convention
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -19,8 +19,7 @@ from capar.body.joint_fitting import fit_joints
 from capar.body.marker_fitting import fit_markers
 from capar.body.sensor_fitting import Fit
 from capar.views.viewer.stage import GROUND, stage, with_mannequin
-from extractors.readers.body_names.body_names import SIDES, BodyName, body_names
-from extractors.readers.body_names.conventions import convention
+from extractors.readers.names import SIDES, BodyName, body_names, convention
 
 TIMES = np.arange(0.0, 2.0, 1.0 / 30.0)
 LIMBS = ("upper_arm", "forearm", "thigh", "shank", "foot")

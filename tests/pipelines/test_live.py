@@ -12,8 +12,8 @@ from live_runs import live_run
 
 from capar.model.json_form import to_json
 from capar.model.observation import Segment
-from capar.pipelines.live.events import SegmentEvent, Status
 from capar.pipelines.live.frames import replayed
+from capar.pipelines.live.ledgers import SegmentEvent, Status
 from capar.pipelines.live.observer import LiveObserver
 from capar_rules.engine import solver
 from extractors.calibration import calibrate

@@ -26,16 +26,18 @@ from capar.model.facts import (
     Swings,
     Touching,
 )
-from capar.pipelines.live.device_frames import DeviceFrames
-from capar.pipelines.live.fact_ledger import FactLedger
-from capar.pipelines.live.first_motion import FirstMotion
-from capar.pipelines.live.frames import FrameBuffer, Poses, body_names, replayed
-from capar.pipelines.live.horizons import LiveHorizons
-from capar.pipelines.live.lead_in import lead_in
-from capar.pipelines.live.recording_file import ValuesFile
-from capar.pipelines.live.rule_memory import RuleMemory
-from capar.pipelines.live.rule_process import RuleProcess
-from capar.pipelines.live.rule_worker import inferred
+from capar.pipelines.live.frames import (
+    DeviceFrames,
+    FrameBuffer,
+    Poses,
+    body_names,
+    lead_in,
+    replayed,
+)
+from capar.pipelines.live.ledgers import FactLedger, RuleMemory
+from capar.pipelines.live.observer import FirstMotion, LiveHorizons
+from capar.pipelines.live.result import ValuesFile
+from capar.pipelines.live.rule_process import RuleProcess, inferred
 from capar.pipelines.live.undecided import (
     Handling,
     awaited,

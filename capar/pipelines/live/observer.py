@@ -1,12 +1,15 @@
 """The live observer: frames in, announcements out, and at the end an observation."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from jaxtyping import Float
 
-from capar.model.calibration import Calibration
+from capar import __version__
+from capar.model.calibration import BodyCalibration, Calibration
 from capar.model.capture import Capture, TagType
+from capar.model.errors import CaparError
 from capar.model.facts import (
     Bears,
     ClosingSpeed,
@@ -16,33 +19,264 @@ from capar.model.facts import (
     Leans,
     Moving,
     Observed,
+    OfAgent,
     RateMhz,
     Resting,
     Swings,
     Touching,
 )
-from capar.model.observation import Observation
-from capar.pipelines.live.carried_poses import CarriedPoses
-from capar.pipelines.live.carried_sums import CarriedSums
-from capar.pipelines.live.events import SegmentEvent
-from capar.pipelines.live.fact_ledger import FactLedger
-from capar.pipelines.live.first_motion import FirstMotion
+from capar.model.observation import Observation, ObservedLink, Segment
+from capar.model.par import ComplexPar
+from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.pipelines.live.frames import FrameBuffer, Poses, Window
-from capar.pipelines.live.horizons import LiveHorizons, horizons_of
-from capar.pipelines.live.result import LiveResult
-from capar.pipelines.live.rule_memory import RuleMemory
+from capar.pipelines.live.ledgers import (
+    Contradictions,
+    FactLedger,
+    RuleMemory,
+    SegmentEvent,
+    SegmentLedger,
+)
+from capar.pipelines.live.result import CarriedPoses, CarriedSums, LiveResult
 from capar.pipelines.live.rule_process import RuleProcess
-from capar.pipelines.live.segment_ledger import Contradictions, SegmentLedger
-from capar.pipelines.live.sentences import Teller
 from capar.pipelines.live.undecided import Handling, awaited, decided_at, nameless, undecided
 from capar_rules.borders.ticks import in_frames, times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.pars.inference import Inference
+from extractors.bodies.bodies import observed_object
 from extractors.calibration import thresholds_of
 from extractors.contact.contacts import EarlierAnswers
 from extractors.measure import Measurements, measured
 from extractors.relations.places import seek_rooms
 from extractors.relations.support import PART
+from extractors.signals.filters import filter_settles_s
+from kb.language.describe import describe
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Place:
+    """Where a thing was when it was touched, and its row in a frame."""
+
+    row: int
+    position: Float[np.ndarray, "3"]
+    orientation: Float[np.ndarray, "4"]
+    known: BodyCalibration
+
+    def is_left(self, poses: Poses) -> bool:
+        """Whether the thing is beyond the floor of its motion; not where it is lost."""
+        way_m = float(np.linalg.norm(poses.positions[self.row] - self.position))
+        cosine = abs(float(poses.orientations[self.row] @ self.orientation))
+        angle = 2.0 * float(np.arccos(min(cosine, 1.0)))
+        return way_m > self.known.motion_floor_m or angle > self.known.motion_floor_rad
+
+
+class FirstMotion:
+    """Things whose first motion is awaited: once one moves, something is decided.
+
+    It is asked of the poses as they are recorded, which costs next to nothing, so that the window
+    is measured as soon as there is something new to see in it.
+
+    Args:
+        calibration: The floor of each thing's motion.
+        rows: The row of each body in a frame, by ``object NAME``.
+    """
+
+    def __init__(self, calibration: Calibration, rows: Mapping[str, int]) -> None:
+        self._calibration = calibration
+        self._rows = rows
+        self._places: list[_Place] = []
+        limits = thresholds_of(calibration)
+        self._least = 1 + round(limits.moving_minimum_s / calibration.step_s)
+        self._away = 0
+
+    def await_(self, window: Window, things: Mapping[str, int]) -> None:
+        """Ask of these things from now on, and of no others.
+
+        Args:
+            window: The last frames.
+            things: The frame at which each was touched first.
+        """
+        self._places = []
+        for name, frame in things.items():
+            stream = window.capture.bodies[name].stream
+            at = max(frame - window.first, 0)
+            self._places.append(
+                _Place(
+                    self._rows[f"object {name}"],
+                    stream.positions[at],
+                    stream.orientations[at],
+                    self._calibration.tag_object(name),
+                )
+            )
+
+    def is_seen(self, poses: Poses) -> bool:
+        """Whether one of them has moved in a frame, and for as long as makes a motion."""
+        self._away = self._away + 1 if any(place.is_left(poses) for place in self._places) else 0
+        return self._away >= self._least
+
+
+@dataclass(frozen=True, slots=True)
+class LiveHorizons:
+    """How far live observation looks back, and how long it waits before it settles anything.
+
+    Two windows slide over the frames. A short one is measured often and names segments; a long
+    one is measured seldom and gives the facts of the result, with the margin on both sides that
+    ``extractors.calibration`` proves.
+    """
+
+    stride_s: float = 0.45
+    """Between two measurements of the short window at most [s], in which segments are found; it is
+    measured once more as soon as one that was found is to be settled."""
+
+    grain_s: float = 1.0
+    """Short windows begin at multiples of this [s]: what is measured at their first frame is then
+    the same several times in a row, and is known."""
+
+    watch_s: float = 0.05
+    """Between two measurements at least [s], where a thing moves whose first motion is awaited."""
+
+    announce_s: float = 0.4
+    """After its end a segment is announced [s]: ends that are newer still move, as much of what the
+    filter asks for has not been seen."""
+
+    settle_s: float = 0.5
+    """After its end a segment is settled [s]: what later frames change in a smoothed pose after
+    0.4 s is less than a millionth of their way, and losses that are shorter than 0.1 s are filled.
+    That is also longer than contacts that are dropped and gaps that are closed (0.1 s)."""
+
+    edge_s: float = 0.75
+    """After its end a segment is settled at whose end a thing starts or stops [s], and so late
+    facts are kept: when it started is told by how its way grew until it was well beyond its
+    floor."""
+
+    lasts_s: float = 0.1
+    """So much later than a rule asks for, what has to last for some time has lasted it [s]: by then
+    the filter knows the end of that time as well as it knows a segment that is announced."""
+
+    fresh_s: float = 0.2
+    """So long a motion that has just begun may turn out to be none [s]: a glitch of the tracker, or
+    what the filter makes of the last frames."""
+
+    near_s: float = 0.9
+    """So long it is awaited whether bodies touch again that have stayed near each other [s]: their
+    contact lasts then."""
+
+    window_s: float = 4.0
+    """Least length of the short window [s]."""
+
+    motion_s: float = 10.0
+    """It reaches back to the beginning of every motion that goes on, to so long ago at most [s]:
+    how a motion is parted is told from its beginning."""
+
+    rest_s: float = 30.0
+    """By how much of its rest the place of a resting body is told [s]: the median of a longer one
+    is that of its last part."""
+
+    handing_s: float = 2.0
+    """While two end-effectors hold one thing, so long it is awaited who lets go of it [s]: whether
+    the other one takes it over depends on that."""
+
+    rules_s: float = 20.0
+    """How far back rules see at most [s]; flicker is resolved in windows of 10 s."""
+
+    segments: int = 5
+    """So many settled segments of a link are told to the rules again, so that these know what a
+    segment follows; fewer where they last longer than ``rules_s``."""
+
+    block_s: float = 5.0
+    """Between two measurements of the long window [s]."""
+
+    margin_s: float = 9.0
+    """What the long window holds on either side of the block that it settles [s]: the calibration's
+    own margin. Nearly all of it is the horizon of extrema of speed, 4 s, twice."""
+
+    def __post_init__(self) -> None:
+        """Check that the windows hold what they are to settle.
+
+        Raises:
+            CaparError: A window is shorter than what it must hold.
+        """
+        if min(self.stride_s, self.grain_s, self.settle_s, self.block_s) <= 0.0:
+            raise CaparError(
+                "live horizons: expected stride, grain, settle and block longer than 0 s"
+            )
+        longest_s = max(self.settle_s, self.edge_s)
+        if self.window_s < 2.0 * (longest_s + self.stride_s):
+            raise CaparError(
+                f"live horizons: a window of {self.window_s:g} s cannot settle what ended "
+                f"{longest_s:g} s ago every {self.stride_s:g} s; expected at least "
+                f"{2.0 * (longest_s + self.stride_s):g} s"
+            )
+
+    @property
+    def whole_s(self) -> float:
+        """Length of the long window [s]."""
+        return 2.0 * self.margin_s + self.block_s
+
+
+def horizons_of(calibration: Calibration, *, stride_s: float = 0.45) -> LiveHorizons:
+    """The horizons that a calibration calls for: by its margin, its filter, and its rests."""
+    known = calibration.horizons
+    limits = thresholds_of(calibration)
+    settles_s = filter_settles_s(calibration.step_s, limits)
+    return LiveHorizons(
+        stride_s=stride_s,
+        settle_s=settles_s + known.gap_s,
+        edge_s=max(limits.rest_begins_s, known.filter_s + known.gap_s),
+        margin_s=known.margin_s,
+    )
+
+
+class Teller:
+    """Says what segments say, one at a time.
+
+    Args:
+        rig: Bodies and agents.
+        rules: The rule base, whose files say what primitives are called.
+    """
+
+    def __init__(self, rig: Capture, rules: Profile) -> None:
+        self._rig = rig
+        self._words = primitive_words(primitive_files(rules.added))
+        self._objects = tuple(observed_object(each) for each in rig.objects)
+
+    def sentence(self, segment: Segment, facts: Iterable[Fact]) -> str:
+        """What was done in a segment; empty where nothing was touched.
+
+        Args:
+            segment: The segment.
+            facts: Contacts and motions of some time before it.
+        """
+        if not segment.objects:
+            return ""
+        told = tuple(each for each in facts if isinstance(each, Touching | Moving | OfAgent))
+        return describe(self._observation(segment, told), words=self._words)
+
+    def _observation(self, segment: Segment, facts: Sequence[Fact]) -> Observation:
+        sensor = self._rig.sensor(segment.ee)
+        owner = self._rig.agent_of(sensor)
+        agent = next(each for each in self._rig.agents if each.name == owner)
+        own = replace(segment, index=0)
+        return Observation(
+            capture=self._rig.name,
+            profile="",
+            rules="",
+            version=__version__,
+            agent=agent,
+            duration_s=segment.end_s,
+            rate_hz=1.0,
+            frames=segment.last + 1,
+            objects=self._objects,
+            links=(ObservedLink(segment.ee, sensor.end_effector, sensor.side, (own,)),),
+            facts=tuple(facts),
+            upars=(),
+            ipars=(),
+            complex_par=ComplexPar("", (), segment.end_s, (), None, ()),
+            locations=(),
+            styles=(),
+            sources=(),
+            notices=(),
+        )
+
 
 EDGES = ("starts_moving", "stops_moving")
 """The events at the end of a segment whose frames are known later than others."""

@@ -1,25 +1,53 @@
-"""Rules that are asked for hours without memory that grows.
-
-The solver frees no term that it ever saw, and every frame has terms of its own: within an hour they
-would fill some hundred megabytes. So a process of its own is asked, which another one replaces in
-time. The first minutes need none: to start one takes as long as some answers.
-"""
+"""Rules that are asked for hours without memory that grows."""
 
 import pickle
 import subprocess
 import sys
+import time
 import weakref
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from threading import Thread
+from typing import BinaryIO
 
 import capar
 from capar.model.errors import CaparError
 from capar.model.facts import Fact
-from capar.pipelines.live.rule_worker import inferred
+from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import Profile
-from capar_rules.pars.inference import Inference
+from capar_rules.pars.inference import Inference, infer
+
+
+def inferred(facts: Sequence[Fact], rules: Profile) -> Inference:
+    """What rules say of facts, their flicker resolved as the profile has it.
+
+    Raises:
+        RuleError: The rules have a fault, or not exactly one answer.
+    """
+    return infer(steady(facts) if rules.steady else tuple(facts), profile=rules)
+
+
+def serve(asked: BinaryIO, answered: BinaryIO) -> None:
+    """Answer until nothing more is asked."""
+    rules: Profile = pickle.load(asked)
+    while True:
+        try:
+            facts: Sequence[Fact] = pickle.load(asked)
+        except EOFError:
+            return
+        answer: Inference | CaparError
+        try:
+            answer = inferred(facts, rules)
+        except CaparError as error:
+            answer = error
+        pickle.dump((answer, time.process_time()), answered, protocol=pickle.HIGHEST_PROTOCOL)
+        answered.flush()
+
+
+if __name__ == "__main__":
+    serve(sys.stdin.buffer, sys.stdout.buffer)
+
 
 OWN_ASKS = 400
 """So often this process asks the rules itself [1]: in three minutes or more."""
@@ -36,7 +64,7 @@ WARMING = 3
 
 _START = (
     "import runpy, sys; sys.path.insert(0, sys.argv[1]); "
-    "runpy.run_module('capar.pipelines.live.rule_worker', run_name='__main__')"
+    "runpy.run_module('capar.pipelines.live.rule_process', run_name='__main__')"
 )
 """Runs the worker of this very copy of the package, from wherever that was imported."""
 

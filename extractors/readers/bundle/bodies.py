@@ -1,24 +1,251 @@
-"""Which body or marker set of which file a sensor or object is, as a pose over time."""
+"""Bodies and marker sets of files as poses over time in one world and on one clock."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
-from capar.model.capture import Conventions, Notice, Stream, notice
+from capar.model.capture import Conventions, Notice, Source, Stream, notice, upward
 from capar.model.errors import CaptureError
-from extractors.readers.bundle.marker_fit import Cluster, arrangement, check_fit, fit_cluster
-from extractors.readers.bundle.shapes import Frame, transform
-from extractors.readers.bundle.world import WorldRecording
+from extractors.faults.quaternion_order import order_notices
+from extractors.readers.bundle.shapes import Frame, mirrored, transform
+from extractors.readers.recording import UNITS, Recording
+from extractors.readers.schema.capture import Tracked
+from extractors.thresholds import Thresholds
 
-if TYPE_CHECKING:
-    from extractors.readers.schema.bodies import Tracked
+FLAT_M = 1e-4
+"""Markers whose second principal spread is below this lie on a line [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cluster:
+    """A named marker set as one rigid body."""
+
+    names: tuple[str, ...]
+    local: Float[np.ndarray, "markers 3"]
+    """Places of the markers in the body's frame [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A cluster's pose over time."""
+
+    positions: Float[np.ndarray, "frames 3"]
+    orientations: Float[np.ndarray, "frames 4"]
+    residuals: Float[np.ndarray, "frames"]
+    """Root mean square distance of seen markers from their places [m]; NaN where lost."""
+
+
+def arrangement(body: str, markers: Mapping[str, Float[np.ndarray, "frames 3"]]) -> Cluster:
+    """The mean arrangement over the frames in which most markers are seen.
+
+    Its origin is the markers' centre; its axes are the world's in the first such frame.
+
+    Raises:
+        CaptureError: Fewer than three markers, on one line, or never three seen at once.
+    """
+    names = tuple(markers)
+    if len(names) < 3:
+        raise CaptureError(f"body {body!r} has markers {list(names)}; a rigid body needs three")
+    points = np.stack([markers[each] for each in names], axis=1)
+    seen = ~np.isnan(points).any(axis=2)
+    whole = np.flatnonzero(seen.all(axis=1))
+    if not whole.size:
+        unseen = [name for name, each in zip(names, seen.T, strict=True) if not each.any()]
+        raise CaptureError(
+            f"body {body!r}: its markers are never all seen at once"
+            + (f"; never seen at all: {unseen}" if unseen else "; use fewer of them")
+        )
+    local = points[whole[0]] - points[whole[0]].mean(axis=0)
+    if np.linalg.svd(local, compute_uv=False)[1] < FLAT_M:
+        raise CaptureError(f"body {body!r}: markers {list(names)} lie on one line")
+    for _ in range(3):
+        fit = fit_cluster(Cluster(names, local), points[whole])
+        turned = geometry.rotations(fit.orientations).inv().as_matrix()
+        local = np.einsum("fij,fmj->mi", turned, points[whole] - fit.positions[:, None]) / len(
+            whole
+        )
+        local = local - local.mean(axis=0)
+    return Cluster(names, local)
+
+
+def fit_cluster(cluster: Cluster, points: Float[np.ndarray, "frames markers 3"]) -> Fit:
+    """The pose of a cluster in every frame in which three of its markers are seen."""
+    frames = len(points)
+    fit = Fit(np.full((frames, 3), np.nan), np.full((frames, 4), np.nan), np.full(frames, np.nan))
+    seen = ~np.isnan(points).any(axis=2)
+    patterns, which = np.unique(seen, axis=0, return_inverse=True)
+    for index, pattern in enumerate(patterns):
+        rows = np.flatnonzero(which.reshape(-1) == index)
+        if _fixes(cluster.local, pattern):
+            _fit_rows(cluster.local[pattern], points[rows][:, pattern], rows, fit)
+    return fit
+
+
+def _fixes(local: Float[np.ndarray, "markers 3"], seen: Bool[np.ndarray, "markers"]) -> bool:
+    """Whether the seen markers leave no rotation open."""
+    if seen.sum() < 3:
+        return False
+    spread = local[seen] - local[seen].mean(axis=0)
+    return bool(np.linalg.svd(spread, compute_uv=False)[1] >= FLAT_M)
+
+
+def _fit_rows(
+    local: Float[np.ndarray, "markers 3"],
+    world: Float[np.ndarray, "frames markers 3"],
+    rows: np.ndarray,
+    fit: Fit,
+) -> None:
+    """Least squares over many frames at once (Kabsch), written into the fit."""
+    centre, middle = local.mean(axis=0), world.mean(axis=1)
+    u, _, vt = np.linalg.svd(np.einsum("fmi,mj->fij", world - middle[:, None], local - centre))
+    sign = np.linalg.det(u @ vt)
+    u[:, :, 2] *= np.where(sign < 0.0, -1.0, 1.0)[:, None]
+    matrices = u @ vt
+    placed = np.einsum("fij,mj->fmi", matrices, local - centre) + middle[:, None]
+    fit.positions[rows] = middle - matrices @ centre
+    fit.orientations[rows] = geometry.quaternions(Rotation.from_matrix(matrices))
+    fit.residuals[rows] = np.sqrt(((placed - world) ** 2).sum(axis=2).mean(axis=1))
+
+
+def check_fit(
+    body: str,
+    cluster: Cluster,
+    points: Float[np.ndarray, "frames markers 3"],
+    fit: Fit,
+    *,
+    limit_m: float,
+) -> None:
+    """Check that the markers keep their arrangement.
+
+    Raises:
+        CaptureError: They do not, or only in a mirror.
+    """
+    rest = float(np.nanmedian(fit.residuals)) if (~np.isnan(fit.residuals)).any() else np.nan
+    if np.isnan(rest):
+        raise CaptureError(f"body {body!r}: three of its markers are never seen at once")
+    if rest <= limit_m:
+        return
+    other = fit_cluster(Cluster(cluster.names, cluster.local * [-1.0, 1.0, 1.0]), points)
+    if float(np.nanmedian(other.residuals)) < 0.5 * rest:
+        raise CaptureError(
+            f"body {body!r}: its markers fit their arrangement only in a mirror; the world is "
+            'left-handed (state handedness = "left") or two markers have changed names'
+        )
+    raise CaptureError(
+        f"body {body!r}: markers {list(cluster.names)} leave {rest * 1e3:.1f} mm of their rigid "
+        f"arrangement, more than {limit_m * 1e3:.1f} mm; leave out those that move against the "
+        "others, or state residual_m"
+    )
+
+
+LARGEST_M = 100.0
+"""No room for motion capture spans more [m]."""
+
+SMALLEST_M = 0.005
+"""Nor do sensors and objects together span less [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class WorldRecording:
+    """A recording in metres, right-handed, z up."""
+
+    source: Source
+    bodies: Mapping[str, Stream]
+    markers: Mapping[str, Float[np.ndarray, "frames 3"]]
+    marker_times: Float[np.ndarray, "frames"]
+    parents: Mapping[str, str]
+    notices: tuple[Notice, ...]
+    conventions: Conventions
+    """By which it was brought there."""
+
+    places: Mapping[str, str] = field(default_factory=dict)
+    """Place on the body of joints and markers, where the capture states it."""
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the file's world is left-handed, so that shapes made for it must be mirrored."""
+        return self.conventions.left_handed
+
+
+def to_world(recording: Recording, *, unit_m: float, up: str, left_handed: bool) -> WorldRecording:
+    """A recording brought to the world; a left-handed one is mirrored in x.
+
+    Raises:
+        CaptureError: The recording then spans what no room spans: a wrong unit.
+    """
+    turn = upward(up)
+    bodies = {
+        name: _moved(each, unit_m, turn, left_handed) for name, each in recording.bodies.items()
+    }
+    markers = {
+        name: turn.apply(mirrored(each * unit_m) if left_handed else each * unit_m)
+        for name, each in recording.markers.items()
+    }
+    check_span(recording.source.path, bodies, markers, unit_m)
+    return WorldRecording(
+        source=recording.source,
+        bodies=bodies,
+        markers=markers,
+        marker_times=recording.marker_times,
+        parents=recording.parents,
+        notices=(
+            *recording.notices,
+            *order_notices(recording.bodies, recording.orders, unit_m, Thresholds()),
+        ),
+        conventions=Conventions(unit_m, up, left_handed),
+    )
+
+
+def _moved(stream: Stream, unit_m: float, turn: Rotation, left_handed: bool) -> Stream:
+    positions, orientations = stream.positions * unit_m, stream.orientations
+    if left_handed:
+        positions = mirrored(positions)
+        orientations = orientations * np.array([1.0, 1.0, -1.0, -1.0])
+    known = ~stream.lost
+    turned = np.full_like(orientations, np.nan)
+    if known.any():
+        turned[known] = geometry.quaternions(turn * geometry.rotations(orientations[known]))
+    return Stream(times=stream.times, positions=turn.apply(positions), orientations=turned)
+
+
+def check_span(
+    path: str,
+    bodies: Mapping[str, Stream],
+    markers: Mapping[str, Float[np.ndarray, "frames 3"]],
+    unit_m: float,
+) -> None:
+    """Check that a recording is of the size of people.
+
+    Raises:
+        CaptureError: It is not; the message names the unit that would make it so.
+    """
+    every = [each.positions for each in bodies.values()] + list(markers.values())
+    points = np.concatenate(every)
+    points = points[~np.isnan(points).any(axis=1)]
+    if not len(points):
+        raise CaptureError(f"{path}: no body or marker is seen in any frame")
+    # the middle nine tenths: a few wild samples do not decide about the unit
+    low, high = np.quantile(points, [0.05, 0.95], axis=0)
+    span = float(np.linalg.norm(high - low))
+    if span > LARGEST_M or (span < SMALLEST_M and len(every) > 1):
+        likely = _likely_unit(span / unit_m)
+        raise CaptureError(
+            f"{path}: in this unit ({unit_m:g} m) the recording spans {span:.4g} m; people move "
+            f'in a few metres. The unit is likely {likely!r}: state unit = "{likely}"'
+        )
+
+
+def _likely_unit(span: float) -> str:
+    """The unit in which a span is one of a person at work; the usual ones first."""
+    fitting = [name for name in ("m", "mm", *UNITS) if 0.1 <= span * UNITS[name] <= 20.0]
+    return fitting[0] if fitting else "m"
+
 
 Files = Mapping[str, WorldRecording]
 
@@ -34,7 +261,7 @@ class Body:
     """Those of its file."""
 
 
-def find_body(entry: "Tracked", files: Files) -> Body:
+def find_body(entry: Tracked, files: Files) -> Body:
     """The body that a sensor's or object's table names, moved by its ``offset``.
 
     Raises:
@@ -53,7 +280,7 @@ def find_body(entry: "Tracked", files: Files) -> Body:
     return Body(stream, frame, conventions=recording.conventions)
 
 
-def _carried(entry: "Tracked", files: Files, patterns: list[str], offset: RigidTransform) -> Body:
+def _carried(entry: Tracked, files: Files, patterns: list[str], offset: RigidTransform) -> Body:
     """What is recorded only through what it carries: the poses of several bodies, one at a time."""
     names = [name for pattern in patterns for name in _fitting(pattern, files)]
     sources = [files[_file_of(entry, files, "body", name)] for name in names]
@@ -90,7 +317,7 @@ def offset_by(stream: Stream, offset: RigidTransform) -> Stream:
     return Stream(times=stream.times, positions=positions, orientations=orientations)
 
 
-def _file_of(entry: "Tracked", files: Files, key: str, name: str) -> str:
+def _file_of(entry: Tracked, files: Files, key: str, name: str) -> str:
     """The file that has a body or marker of that name."""
     if entry.file and entry.file not in files:
         raise entry.unknown("file", entry.file, files, "file")
@@ -107,7 +334,7 @@ def _file_of(entry: "Tracked", files: Files, key: str, name: str) -> str:
     return found[0]
 
 
-def _from_markers(entry: "Tracked", files: Files, names: list[str], offset: RigidTransform) -> Body:
+def _from_markers(entry: Tracked, files: Files, names: list[str], offset: RigidTransform) -> Body:
     recording = files[_file_of(entry, files, "markers", names[0])]
     for name in names:
         if name not in recording.markers:
@@ -131,7 +358,7 @@ def _from_markers(entry: "Tracked", files: Files, names: list[str], offset: Rigi
     return Body(stream, frame, (wrong,) if wild.any() else (), recording.conventions)
 
 
-def _stated(entry: "Tracked", names: list[str]) -> Cluster | None:
+def _stated(entry: Tracked, names: list[str]) -> Cluster | None:
     """The arrangement that capture.toml itself states."""
     if entry.arrangement is None:
         return None
@@ -141,7 +368,7 @@ def _stated(entry: "Tracked", names: list[str]) -> Cluster | None:
     return Cluster(tuple(names), np.array([entry.arrangement[name] for name in names]))
 
 
-def _own_frame(entry: "Tracked", cluster: Cluster) -> Cluster:
+def _own_frame(entry: Tracked, cluster: Cluster) -> Cluster:
     """The arrangement in the frame that ``origin`` and ``axes`` state."""
     places = dict(zip(cluster.names, cluster.local, strict=True))
     origin = [_place(entry, "origin", places, name) for name in entry.origin]
@@ -150,7 +377,7 @@ def _own_frame(entry: "Tracked", cluster: Cluster) -> Cluster:
     return Cluster(cluster.names, turn.inv().apply(cluster.local - centre))
 
 
-def _axes(entry: "Tracked", places: Mapping[str, Float[np.ndarray, "3"]]) -> Rotation:
+def _axes(entry: Tracked, places: Mapping[str, Float[np.ndarray, "3"]]) -> Rotation:
     """Axes from pairs of markers: the first is kept, the second is made square to it."""
     ways, units = [], []
     for axis, (start, end) in (entry.axes or {}).items():
@@ -162,7 +389,7 @@ def _axes(entry: "Tracked", places: Mapping[str, Float[np.ndarray, "3"]]) -> Rot
 
 
 def _place(
-    entry: "Tracked", key: str, places: Mapping[str, Float[np.ndarray, "3"]], name: str
+    entry: Tracked, key: str, places: Mapping[str, Float[np.ndarray, "3"]], name: str
 ) -> Float[np.ndarray, "3"]:
     if name not in places:
         raise entry.unknown("marker", name, places, key)
@@ -255,3 +482,152 @@ class MeanPlaces(Mapping[str, Float[np.ndarray, "3"]]):
         if name in self._recording.bodies:
             return self._recording.bodies[name].positions
         return self._recording.markers[name]
+
+
+GAP_S = Thresholds().gap_s
+"""Nothing is interpolated between samples further apart than this [s]."""
+
+GAP_STEPS = 1.5
+"""Or than so many steps of a source that is slower."""
+
+SAME_S = 1e-6
+"""Time stamps that differ by less are one [s]."""
+
+FAR_RATE = 4.0
+"""A rate that differs from the recorded ones by more than this factor is doubtful."""
+
+LARGEST_FRAMES = 1e7
+"""Frames that a capture may have: more than a day at 100 Hz."""
+
+
+def resampled(
+    stream: Stream, times: Float[np.ndarray, "frames"], *, extend: str = "none"
+) -> Stream:
+    """A stream at other times: positions by cubic, orientations by slerp.
+
+    Args:
+        stream: The source, on a clock of its own with the same zero.
+        times: The wanted clock [s].
+        extend: ``rest`` holds the first pose before it and the last after it; ``none`` does not.
+    """
+    known = np.flatnonzero(~stream.lost)
+    if not known.size:
+        return _lost(times)
+    if extend == "none" and _is_on(stream, times):
+        return Stream(times, stream.positions, stream.orientations)  # what is lost stays so
+    source = stream.times[known]
+    wanted = np.clip(times, source[0], source[-1]) if extend == "rest" else times
+    near = _near(source, wanted, stream.times)
+    positions = np.full((len(times), 3), np.nan)
+    orientations = np.full((len(times), 4), np.nan)
+    inside = np.clip(wanted[near], source[0], source[-1])
+    positions[near] = _positions(source, stream.positions[known], inside)
+    orientations[near] = geometry.slerp(source, stream.orientations[known], inside)
+    return Stream(times=times, positions=positions, orientations=orientations)
+
+
+def _is_on(stream: Stream, times: Float[np.ndarray, "frames"]) -> bool:
+    return len(times) == len(stream.times) and bool(np.abs(times - stream.times).max() < SAME_S)
+
+
+def _lost(times: Float[np.ndarray, "frames"]) -> Stream:
+    frames = len(times)
+    return Stream(
+        times=times,
+        positions=np.full((frames, 3), np.nan),
+        orientations=np.full((frames, 4), np.nan),
+    )
+
+
+def _near(
+    source: Float[np.ndarray, "known"],
+    wanted: Float[np.ndarray, "frames"],
+    clock: Float[np.ndarray, "samples"],
+) -> Bool[np.ndarray, "frames"]:
+    """Where a wanted time has a known sample at itself, or lies between two near ones."""
+    reach = max(GAP_S, GAP_STEPS * float(np.median(np.diff(clock))))
+    after = np.clip(np.searchsorted(source, wanted), 0, len(source) - 1)
+    before = np.clip(after - 1, 0, len(source) - 1)
+    exact = np.minimum(np.abs(wanted - source[before]), np.abs(source[after] - wanted)) < SAME_S
+    inside = (wanted >= source[0]) & (wanted <= source[-1])
+    return exact | (inside & (source[after] - source[before] <= reach + SAME_S))
+
+
+def _positions(
+    source: Float[np.ndarray, "known"],
+    positions: Float[np.ndarray, "known 3"],
+    wanted: Float[np.ndarray, "frames"],
+) -> Float[np.ndarray, "frames 3"]:
+    """Cubic inside runs of steady sampling, linear in short ones."""
+    from scipy.interpolate import CubicSpline
+
+    if len(source) == 1:
+        return np.repeat(positions, len(wanted), axis=0)
+    out = np.stack([np.interp(wanted, source, each) for each in positions.T], axis=1)
+    step = max(GAP_S, GAP_STEPS * float(np.median(np.diff(source))))
+    breaks = np.flatnonzero(np.diff(source) > step) + 1
+    for run in np.split(np.arange(len(source)), breaks):
+        if len(run) < 4:
+            continue
+        within = (wanted >= source[run[0]]) & (wanted <= source[run[-1]])
+        out[within] = CubicSpline(source[run], positions[run])(wanted[within])
+    return out
+
+
+def shared_clock(
+    streams: Sequence[Stream],
+    *,
+    rate_hz: float | None,
+    span_s: tuple[float | None, float | None],
+    where: str,
+) -> tuple[Float[np.ndarray, "frames"], float]:
+    """The clock that every stream is put on, from zero, and the files' time of its zero.
+
+    Args:
+        streams: The streams on their files' clocks.
+        rate_hz: Frames a second; None keeps the clock that all streams share.
+        span_s: What is kept, in seconds after the earliest frame.
+        where: The capture.toml, for messages.
+
+    Raises:
+        CaptureError: The streams have different clocks and no rate is stated.
+    """
+    if not streams:
+        raise CaptureError(f"{where}: no sensor or object has a body or markers")
+    first = min(float(each.times[0]) for each in streams)
+    last = max(float(each.times[-1]) for each in streams)
+    begin = first + (span_s[0] or 0.0)
+    end = last if span_s[1] is None else min(last, first + span_s[1])
+    if rate_hz is not None:
+        count = _count(begin, end, rate_hz, where)
+        return np.arange(count) / rate_hz, begin
+    clock = streams[0].times
+    for stream in streams:
+        if len(stream.times) != len(clock) or np.abs(stream.times - clock).max() > SAME_S:
+            raise CaptureError(
+                f"{where}: the streams are on different clocks ({len(clock)} and "
+                f"{len(stream.times)} frames); state the rate to bring them to, like rate_hz = 100"
+            )
+    kept = clock[(clock >= begin - SAME_S) & (clock <= end + SAME_S)]
+    if len(kept) < 2:
+        raise CaptureError(f"{where}: no frames between from_s and to_s")
+    return kept - kept[0], float(kept[0])
+
+
+def rate_notices(streams: Sequence[Stream], rate_hz: float | None) -> list[Notice]:
+    """A notice if the stated rate is far from every rate at which bodies were recorded."""
+    rates = [1.0 / float(np.median(np.diff(each.times))) for each in streams]
+    if rate_hz is None or min(rates) / FAR_RATE <= rate_hz <= max(rates) * FAR_RATE:
+        return []
+    recorded = f"{min(rates):.4g}" + (f" to {max(rates):.4g}" if max(rates) > min(rates) else "")
+    return [notice("rate-mistyped", stated_hz=rate_hz, recorded_hz=recorded)]
+
+
+def _count(begin: float, end: float, rate_hz: float, where: str) -> int:
+    frames = (end - begin) * rate_hz
+    if not 1.0 <= frames <= LARGEST_FRAMES:
+        raise CaptureError(
+            f"{where}: {end - begin:g} s at rate_hz = {rate_hz:g} make {frames:.0f} frames; "
+            f"between 2 and {LARGEST_FRAMES:.0e} are possible"
+        )
+    return int(np.floor(frames + 1e-6)) + 1

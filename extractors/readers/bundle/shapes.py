@@ -1,34 +1,126 @@
-"""Shapes that capture.toml states, as meshes: files, primitives, capsules over joints, parts."""
+"""Shapes that capture.toml states, as meshes, and the supports that are placed by them."""
 
-from collections.abc import Callable, Iterator, Mapping
+import io
+import zipfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
-from capar.model.capture import Notice, Shape, ShapeSource, Source, notice
-from extractors.readers.bundle.mesh import open_edges, read_mesh
-from extractors.readers.bundle.world import mirrored
-from extractors.readers.files import source_of
+from capar.model.capture import Notice, Shape, ShapeSource, Source, TagObject, TagType, notice
+from capar.model.errors import CaparError, FileError
+from extractors.readers.files import check_file, check_zip, source_of
 from extractors.readers.recording import UNITS
-from extractors.readers.schema.document import expanded
+from extractors.readers.schema.capture import (
+    BoxShape,
+    CapsuleShape,
+    CapsulesShape,
+    CylinderShape,
+    MarkerBoxShape,
+    MeshShape,
+    ObjectEntry,
+    PartsShape,
+    Pose,
+    SphereShape,
+)
+from extractors.readers.schema.entry import expanded
 
-if TYPE_CHECKING:
-    from extractors.readers.schema.shapes import (
-        BoxShape,
-        CapsuleShape,
-        CapsulesShape,
-        CylinderShape,
-        MarkerBoxShape,
-        MeshShape,
-        PartsShape,
-        Pose,
-        SphereShape,
+MESH_LIMIT = 256 << 20
+"""Bytes that a mesh file may hold or expand to [B]."""
+
+FORMATS = ("stl", "ply", "obj", "off", "glb", "3mf", "dae", "x3d", "gltf")
+"""Suffixes that are tried; the last four need what trimesh asks for."""
+
+_XML = (".model", ".xml", ".dae", ".x3d", ".rels")
+
+
+def read_mesh(path: Path) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "faces 3"]]:
+    """Corners in the file's own unit, and faces.
+
+    Raises:
+        FileError: The file is missing, damaged, too large, or XML that defines entities.
+    """
+    check_file(path)
+    suffix = path.suffix.lower().removeprefix(".")
+    if suffix not in FORMATS:
+        raise FileError(path, f"a mesh of kind {suffix!r}.", f"These are tried: {FORMATS}.")
+    _check_size(path)
+    try:
+        vertices, faces = _load(path, suffix)
+    except CaparError:
+        raise
+    except ImportError as error:
+        raise FileError(
+            path,
+            f"reading {suffix} needs a package that is not installed: {error}.",
+            "Install it, or convert the mesh to STL, PLY, OBJ or GLB.",
+        ) from error
+    except Exception as error:  # damaged bytes make mesh loaders raise anything
+        detail = f"{type(error).__name__}: {str(error)[:200]}"
+        raise FileError(path, f"is a damaged {suffix} mesh ({detail}).") from error
+    if not len(faces) or not np.isfinite(vertices).all():
+        raise FileError(path, "has no triangles, or corners at infinity.", "Export it again.")
+    return vertices, faces
+
+
+def open_edges(vertices: Float[np.ndarray, "vertices 3"], faces: Int[np.ndarray, "faces 3"]) -> int:
+    """How many edges bound one triangle only; a closed surface has none.
+
+    Vertices at the same place count as one, as files with textures repeat them.
+    """
+    _, which = np.unique(vertices, axis=0, return_inverse=True)
+    corners = which.reshape(-1)[faces]
+    corners = corners[(corners != np.roll(corners, 1, axis=1)).all(axis=1)]
+    edges = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2))
+    _, counts = np.unique(edges, axis=0, return_counts=True)
+    return int((counts == 1).sum())
+
+
+def _load(
+    path: Path, suffix: str
+) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "faces 3"]]:
+    import trimesh
+
+    # from memory, so that nothing the file refers to is opened
+    mesh: Any = trimesh.load(
+        io.BytesIO(path.read_bytes()), file_type=suffix, force="mesh", skip_materials=True
     )
+    faces = np.asarray(mesh.faces, dtype=np.int64)
+    return np.asarray(mesh.vertices, dtype=float), faces.reshape(-1, 3)
+
+
+def _check_size(path: Path) -> None:
+    if path.stat().st_size > MESH_LIMIT:
+        raise FileError(path, f"is a mesh of more than {MESH_LIMIT >> 20} MiB.", "Decimate it.")
+    with path.open("rb") as file:
+        zipped = file.read(4) == b"PK\x03\x04"
+    if zipped:
+        names = check_zip(path, MESH_LIMIT)
+        with zipfile.ZipFile(path) as archive:
+            for name in names:
+                if name.lower().endswith(_XML):
+                    with archive.open(name) as member:
+                        _check_xml(path, member.read(MESH_LIMIT))
+    elif path.suffix.lower() in _XML:
+        _check_xml(path, path.read_bytes())
+
+
+def _check_xml(path: Path, data: bytes) -> None:
+    """XML may define no entities: a few lines of them expand without end."""
+    text = data.replace(b"\0", b"")  # so that UTF-16 hides nothing
+    if b"<!ENTITY" in text or b"<!DOCTYPE" in text:
+        raise FileError(
+            path,
+            "is XML with a DOCTYPE or entities, which are never expanded.",
+            "Export it again, without them.",
+        )
+
 
 LARGEST_M = 20.0
 """No shape is longer [m]."""
@@ -75,7 +167,7 @@ class Frame:
     """What is doubtful about the mesh files."""
 
 
-def build_shape(entry: "Pose", frame: Frame) -> Shape:
+def build_shape(entry: Pose, frame: Frame) -> Shape:
     """The shape that a table states.
 
     Raises:
@@ -92,13 +184,13 @@ def assumed(shape: Shape) -> Shape:
     return replace(shape, source=ShapeSource.ASSUMED)
 
 
-def _placed(entry: "Pose", frame: Frame) -> Described:
+def _placed(entry: Pose, frame: Frame) -> Described:
     """A shape's corners in the body's frame, after its own pose, its faces and description."""
     vertices, faces, description = _MAKERS[type(entry).__name__](entry, frame)
     return transform(entry).apply(vertices), faces, description
 
 
-def transform(pose: "Pose | None") -> RigidTransform:
+def transform(pose: Pose | None) -> RigidTransform:
     """The rigid transform of a stated pose; none stated is no motion."""
     if pose is None:
         return RigidTransform.identity()
@@ -106,7 +198,7 @@ def transform(pose: "Pose | None") -> RigidTransform:
     return geometry.transforms(np.array(pose.position), quaternion)
 
 
-def _mesh(entry: "MeshShape", frame: Frame) -> Described:
+def _mesh(entry: MeshShape, frame: Frame) -> Described:
     path = expanded(entry, "mesh")
     if not path.is_file():
         raise entry.error("mesh", f"no mesh file {entry.mesh!r} ({path}).", _others(path))
@@ -117,7 +209,7 @@ def _mesh(entry: "MeshShape", frame: Frame) -> Described:
     vertices = vertices * UNITS[entry.unit]
     if (entry.handedness or ("left" if frame.mirrored else "right")) == "left":
         vertices, faces = mirrored(vertices), faces[:, ::-1]
-    _check_size(entry, vertices)
+    _check_size_shapes(entry, vertices)
     return vertices, faces, path.name
 
 
@@ -128,7 +220,7 @@ def _others(path: Path) -> str:
     return f"The folder holds: {', '.join(names[:12])}"
 
 
-def _check_size(entry: "MeshShape", vertices: np.ndarray) -> None:
+def _check_size_shapes(entry: MeshShape, vertices: np.ndarray) -> None:
     size = float((vertices.max(axis=0) - vertices.min(axis=0)).max())
     if not 0.001 <= size <= LARGEST_M:
         raise entry.error(
@@ -138,11 +230,11 @@ def _check_size(entry: "MeshShape", vertices: np.ndarray) -> None:
         )
 
 
-def _box(entry: "BoxShape", frame: Frame) -> Described:
+def _box(entry: BoxShape, frame: Frame) -> Described:
     return _box_about(np.zeros(3), entry.box)
 
 
-def _marker_box(entry: "MarkerBoxShape", frame: Frame) -> Described:
+def _marker_box(entry: MarkerBoxShape, frame: Frame) -> Described:
     names = entry.around or list(frame.markers)
     if len(names) < 2:
         problem = 'box = "markers" needs markers: a body\'s own, or around = [..].'
@@ -164,7 +256,7 @@ def _box_about(middle: np.ndarray, size: list[float]) -> Described:
     return np.array(box.vertices) + middle, np.array(box.faces), f"box {_text(size)} m"
 
 
-def _cylinder(entry: "CylinderShape", frame: Frame) -> Described:
+def _cylinder(entry: CylinderShape, frame: Frame) -> Described:
     import trimesh
 
     radius, height = entry.cylinder
@@ -173,19 +265,19 @@ def _cylinder(entry: "CylinderShape", frame: Frame) -> Described:
     return np.array(mesh.vertices), np.array(mesh.faces), text
 
 
-def _sphere(entry: "SphereShape", frame: Frame) -> Described:
+def _sphere(entry: SphereShape, frame: Frame) -> Described:
     zero = np.zeros(3)
     return *_capsule_between(zero, zero, entry.sphere), f"sphere of radius {entry.sphere:.3g} m"
 
 
-def _capsule(entry: "CapsuleShape", frame: Frame) -> Described:
+def _capsule(entry: CapsuleShape, frame: Frame) -> Described:
     radius, height = entry.capsule
     half = np.array([0.0, 0.0, height / 2])
     text = f"capsule of radius {radius:.3g} m, height {height:.3g} m"
     return *_capsule_between(-half, half, radius), text
 
 
-def _capsules(entry: "CapsulesShape", frame: Frame) -> Described:
+def _capsules(entry: CapsulesShape, frame: Frame) -> Described:
     pairs = _pairs(entry, frame)
     points = {"": np.zeros(3)}
     for name in {name for pair in pairs for name in pair} - {""}:
@@ -198,7 +290,7 @@ def _capsules(entry: "CapsulesShape", frame: Frame) -> Described:
     return *joined(meshes), f"{what} of radius {entry.radius_m:.3g} m{long}"
 
 
-def _pairs(entry: "CapsulesShape", frame: Frame) -> list[tuple[str, str]]:
+def _pairs(entry: CapsulesShape, frame: Frame) -> list[tuple[str, str]]:
     """The pairs of points that capsules are put between; the body itself is ``""``."""
     if not isinstance(entry.capsules, str):
         return [(first, second) for first, second in entry.capsules]
@@ -224,16 +316,21 @@ def _stretching(pairs: list[tuple[str, str]], frame: Frame) -> Iterator[Notice]:
             )
 
 
-def _point(entry: "Pose", key: str, frame: Frame, name: str) -> Float[np.ndarray, "3"]:
+def _point(entry: Pose, key: str, frame: Frame, name: str) -> Float[np.ndarray, "3"]:
     if name not in frame.points:
         raise entry.unknown("point", name, frame.points, key)
     return frame.points[name]
 
 
-def _parts(entry: "PartsShape", frame: Frame) -> Described:
+def _parts(entry: PartsShape, frame: Frame) -> Described:
     parts = [_placed(part, frame) for part in entry.parts]
     meshes = [(vertices, faces) for vertices, faces, _ in parts]
     return *joined(meshes), " + ".join(text for _, _, text in parts)
+
+
+def mirrored(points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
+    """Points with x negated."""
+    return np.asarray(points * np.array([-1.0, 1.0, 1.0]))
 
 
 def joined(meshes: list[Mesh]) -> Mesh:
@@ -275,3 +372,97 @@ _MAKERS: dict[str, Callable[[Any, Frame], Described]] = {
     "PartsShape": _parts,
 }
 """What builds each kind of shape of the schema."""
+
+
+NEAR_S = 0.1
+"""An object must be seen this near the stated time [s]."""
+
+Pose_support = tuple[Float[np.ndarray, "3"], Float[np.ndarray, "4"]]
+
+
+def under_object(
+    entry: ObjectEntry, shape: Shape | None, others: Sequence[TagObject]
+) -> tuple[Pose_support, str]:
+    """The pose of a support whose surface is where an object's lowest corner is at a time.
+
+    A pattern in ``top_at_bottom_of`` stands for every mobile object that has a shape, or for all
+    if none has: the surface is then at the median or the lowest of their lowest corners. What has
+    no shape is a point, its origin. Without a ``position`` the support
+    is under the middle of the objects.
+
+    Returns:
+        The pose, and how it was derived.
+
+    Raises:
+        CaparError: No such object, the support has no shape, or the object is not seen then.
+    """
+    resting = _resting(entry, others)
+    if shape is None:
+        raise entry.error("top_at_bottom_of", "the support needs a shape.")
+    found = [_corners(entry, thing) for thing in resting]
+    bottoms = np.array([float(corners[:, 2].min()) for corners, _ in found])
+    top = float(bottoms.min() if entry.of == "lowest" else np.median(bottoms))
+    corners = np.concatenate([corners for corners, _ in found])
+    middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
+    turn = Rotation.from_euler("z", entry.turn_deg, degrees=True)
+    highest = float(turn.apply(np.array(shape.vertices))[:, 2].max())
+    x, y = _place(entry, middle)
+    height = top - (highest if entry.surface_m is None else entry.surface_m)
+    text = f"top at {top:.3f} m, {_which(entry, resting)} at rest at {found[0][1]:.2f} s"
+    return (np.array([x, y, height]), geometry.quaternions(turn)), text
+
+
+def _place(entry: ObjectEntry, middle: Float[np.ndarray, "3"]) -> tuple[float, float]:
+    """Where the support stands [m]: as stated, or under the middle of what rests on it."""
+    if entry.position is None:
+        return float(middle[0]), float(middle[1])
+    if len(entry.position) != 2:
+        raise entry.error(
+            "position",
+            f"position = {entry.position} has a height, which top_at_bottom_of gives.",
+            "Give x and y only.",
+        )
+    return entry.position[0], entry.position[1]
+
+
+def _which(entry: ObjectEntry, resting: Sequence[TagObject]) -> str:
+    """In words: the point that gives the height."""
+    if len(resting) == 1:
+        return f"the lowest point of {resting[0].name}"
+    if entry.of == "lowest":
+        return f"the lowest point of the lowest of {len(resting)} objects"
+    return f"the median of the lowest points of {len(resting)} objects"
+
+
+def _corners(entry: ObjectEntry, thing: TagObject) -> tuple[Float[np.ndarray, "corners 3"], float]:
+    """An object's corners in the world at the stated time [m], and the time it is seen at [s]."""
+    if entry.at_s is None:
+        raise entry.error("top_at_bottom_of", f"'at_s' is missing: when {thing.name} rests there.")
+    at_s = entry.at_s + (float(thing.stream.times[-1]) if entry.at_s < 0.0 else 0.0)
+    known = np.flatnonzero(~thing.stream.lost)
+    if not known.size:
+        raise entry.error("at_s", f"{thing.name} is never seen.")
+    frame = int(known[np.argmin(np.abs(thing.stream.times[known] - at_s))])
+    seen_s = float(thing.stream.times[frame])
+    if abs(seen_s - at_s) > NEAR_S:
+        raise entry.error(
+            "at_s", f"{thing.name} is not seen near {at_s:g} s, but at {seen_s:.2f} s."
+        )
+    corners = np.zeros((1, 3)) if thing.shape is None else np.array(thing.shape.vertices)
+    return thing.stream.pose(frame).apply(corners), seen_s
+
+
+def _resting(entry: ObjectEntry, others: Sequence[TagObject]) -> list[TagObject]:
+    """The object or, by a pattern, the objects that rest on the support."""
+    pattern = entry.top_at_bottom_of or ""
+    named = [thing for thing in others if thing.name == pattern]
+    if "*" not in pattern and not named:
+        raise entry.unknown("object", pattern, [o.name for o in others], "top_at_bottom_of")
+    fitting = named or [
+        thing
+        for thing in others
+        if thing.tag is TagType.MOBILE and fnmatchcase(thing.name, pattern)
+    ]
+    if not fitting:
+        raise entry.error("top_at_bottom_of", f"no mobile object fits {pattern!r}.")
+    return [thing for thing in fitting if thing.shape] or fitting

@@ -11,8 +11,7 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Notice, notice
 from capar.model.errors import FileError
-from extractors.readers.files import read_text, source_of
-from extractors.readers.formats.numbers import read_rows
+from extractors.readers.files import read_rows, read_text, source_of
 from extractors.readers.recording import Recording, track, uniform_clock
 
 CHANNELS = tuple(f"{axis}{kind}" for kind in ("position", "rotation") for axis in "XYZ")

@@ -8,8 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.errors import FileError, UnknownNameError
-from extractors.readers.files import read_text, source_of
-from extractors.readers.formats.numbers import read_rows
+from extractors.readers.files import read_rows, read_text, source_of
 from extractors.readers.recording import Recording, check_rate, track, uniform_clock
 
 OPTIONS = frozenset({"time", "columns", "order", "rate_hz", "delimiter"})

@@ -10,10 +10,8 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Stream
 from capar.model.errors import CaptureError, FileError, UnknownNameError
-from extractors.readers.files import read_text, source_of
-from extractors.readers.formats.numbers import read_rows
-from extractors.readers.recorded_times import iso_time
-from extractors.readers.recording import Recording, track, uniform_clock
+from extractors.readers.files import read_rows, read_text, source_of
+from extractors.readers.recording import Recording, iso_time, track, uniform_clock
 
 MILLIMETRE = 0.001
 _SIXD = 16

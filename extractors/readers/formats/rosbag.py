@@ -10,8 +10,7 @@ import numpy as np
 from capar.model.capture import Source, Stream, notice
 from capar.model.errors import FileError
 from extractors.readers.files import source_of
-from extractors.readers.recorded_times import iso_of_stamp
-from extractors.readers.recording import Recording, track
+from extractors.readers.recording import Recording, iso_of_stamp, track
 
 Sample = tuple[str, int, tuple[float, ...]]
 """A body's name, its time stamp [ns], and x y z then w x y z; NaN where it was lost."""

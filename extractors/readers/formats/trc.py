@@ -9,8 +9,7 @@ from jaxtyping import Float
 
 from capar.model.capture import Notice, notice
 from capar.model.errors import FileError, UnknownNameError
-from extractors.readers.files import read_text, source_of
-from extractors.readers.formats.numbers import read_rows
+from extractors.readers.files import read_rows, read_text, source_of
 from extractors.readers.recording import UNITS, Recording, contradicted_rate, unrounded
 
 

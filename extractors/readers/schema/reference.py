@@ -9,24 +9,23 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from extractors.readers.schema.bodies import (
-    ManyObjects,
-    ManySensors,
-    ObjectEntry,
-    ObjectKind,
-    SensorEntry,
-)
 from extractors.readers.schema.capture import (
+    SHAPES,
     ArrayGroup,
     CaptureFile,
     Contact,
+    ManyObjects,
+    ManySensors,
     MotionFile,
+    ObjectEntry,
+    ObjectKind,
     Performer,
     Pivots,
+    Pose,
     Purposes,
+    SensorEntry,
 )
 from extractors.readers.schema.entry import Entry, relation
-from extractors.readers.schema.shapes import SHAPES, Pose
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 

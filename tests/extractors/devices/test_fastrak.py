@@ -6,12 +6,9 @@ import pytest
 import tracked
 
 from capar.model.errors import DeviceError
-from extractors.devices.addresses import parse_address
-from extractors.devices.fastrak import FastrakTracker, fastrak_settings
-from extractors.devices.fastrak_records import ITEMS
-from extractors.devices.fastrak_simulator import FastrakSimulator
-from extractors.devices.motion_source import SmoothMotion
-from extractors.devices.simulated_line import Faults, Sent
+from extractors.devices.fastrak import ITEMS, FastrakSimulator, FastrakTracker, fastrak_settings
+from extractors.devices.simulator import Faults, Sent, SmoothMotion
+from extractors.devices.tracker import parse_address
 
 
 def tracker(simulator: FastrakSimulator, options: str) -> FastrakTracker:

@@ -9,16 +9,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from capar.model.errors import DeviceError
-from extractors.devices.addresses import parse_address
 from extractors.devices.bird_formats import FORMATS
-from extractors.devices.flock import FlockTracker
-from extractors.devices.flock_commands import MOST_HZ, SIZES, examine, line_limit_hz
-from extractors.devices.flock_port import FlockPort
-from extractors.devices.flock_rig import FlockRig
-from extractors.devices.flock_settings import flock_settings
-from extractors.devices.flock_simulator import FlockSimulator
-from extractors.devices.motion_source import SmoothMotion
-from extractors.devices.simulated_line import Faults, Sent
+from extractors.devices.flock import (
+    MOST_HZ,
+    SIZES,
+    FlockPort,
+    FlockRig,
+    FlockSimulator,
+    FlockTracker,
+    examine,
+    flock_settings,
+    line_limit_hz,
+)
+from extractors.devices.simulator import Faults, Sent, SmoothMotion
+from extractors.devices.tracker import parse_address
 
 SECONDS = 0.8
 WHOLE_S = 0.4

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from extractors.devices.bird_formats import FORMATS, Scaling, pose_of_words, words_of_pose
-from extractors.devices.flock_records import (
+from extractors.devices.flock import (
     KEPT,
     RecordParser,
     decode_word,

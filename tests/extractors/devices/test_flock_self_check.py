@@ -7,10 +7,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from capar.model.errors import DeviceError
-from extractors.devices.flock_rig import FlockRig
-from extractors.devices.flock_self_check import find_quaternion_sign
-from extractors.devices.flock_simulator import FlockSimulator
-from extractors.devices.motion_source import Poses, SmoothMotion
+from extractors.devices.flock import FlockRig, FlockSimulator, find_quaternion_sign
+from extractors.devices.simulator import Poses, SmoothMotion
 
 
 @dataclass(frozen=True)

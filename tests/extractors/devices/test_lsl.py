@@ -9,10 +9,9 @@ import tracked
 from lsl_loopback import LOOPBACK
 
 from capar.model.errors import DeviceError
-from extractors.devices.addresses import parse_address
 from extractors.devices.lsl import LslOutlet, LslTracker
-from extractors.devices.motion_source import SmoothMotion
-from extractors.devices.tracker import Description, Frame
+from extractors.devices.simulator import SmoothMotion
+from extractors.devices.tracker import Description, Frame, parse_address
 
 SENSORS = ("right_hand", "head", "mug")
 

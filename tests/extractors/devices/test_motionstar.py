@@ -5,16 +5,16 @@ import pytest
 import tracked
 
 from capar.model.errors import DeviceError
-from extractors.devices.addresses import parse_address
 from extractors.devices.bird_formats import FORMATS
-from extractors.devices.flock_commands import MOST_HZ
-from extractors.devices.motion_source import SmoothMotion
-from extractors.devices.motionstar import MotionStarTracker
-from extractors.devices.motionstar_simulator import (
+from extractors.devices.flock import MOST_HZ
+from extractors.devices.motionstar import (
     MotionStarSimulator,
+    MotionStarTracker,
     SentPacket,
     ServerFaults,
 )
+from extractors.devices.simulator import SmoothMotion
+from extractors.devices.tracker import parse_address
 
 
 def tracker(simulator: MotionStarSimulator, options: str) -> MotionStarTracker:

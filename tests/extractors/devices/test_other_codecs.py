@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from extractors.devices import birdnet_packets as birdnet
-from extractors.devices import fastrak_records as fastrak
-from extractors.devices import vrpn_messages as vrpn
+from extractors.devices import fastrak as fastrak
+from extractors.devices import motionstar as birdnet
+from extractors.devices import vrpn as vrpn
 from extractors.devices.bird_formats import FORMATS
 from extractors.devices.tracker import DeviceLostError
 

@@ -12,14 +12,16 @@ from hypothesis import strategies as st
 
 from capar.model.capture import Role, TagType, recorded_at
 from capar.model.errors import CaparError, FileError, UnknownNameError
-from extractors.devices.addresses import parse_address
-from extractors.devices.bundle_writer import Mount, frame_times, write_bundle
-from extractors.devices.flock import FlockTracker
-from extractors.devices.flock_rig import FlockRig
-from extractors.devices.flock_simulator import FlockSimulator
-from extractors.devices.motion_source import CapturedMotion, SmoothMotion
-from extractors.devices.recording import RecordingWriter, read_live_recording
-from extractors.devices.tracker import Counts, Description, Event, Frame
+from extractors.devices.flock import FlockRig, FlockSimulator, FlockTracker
+from extractors.devices.recording import (
+    Mount,
+    RecordingWriter,
+    frame_times,
+    read_live_recording,
+    write_bundle,
+)
+from extractors.devices.simulator import CapturedMotion, SmoothMotion
+from extractors.devices.tracker import Counts, Description, Event, Frame, parse_address
 from extractors.readers.bundle.capture_toml import read_capture
 
 SENSORS = ("right_hand", "head", "mug")

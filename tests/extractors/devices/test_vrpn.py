@@ -8,10 +8,9 @@ import pytest
 import tracked
 
 from capar.model.errors import DeviceError
-from extractors.devices.addresses import parse_address
-from extractors.devices.motion_source import SmoothMotion
-from extractors.devices.vrpn import VrpnTracker
-from extractors.devices.vrpn_simulator import SentPose, VrpnSimulator
+from extractors.devices.simulator import SmoothMotion
+from extractors.devices.tracker import parse_address
+from extractors.devices.vrpn import SentPose, VrpnSimulator, VrpnTracker
 
 
 def tracker(simulator: VrpnSimulator, options: str) -> VrpnTracker:

@@ -8,7 +8,7 @@ from measured_bodies import stream
 
 from capar.model.capture import Sensor, TagObject, TagType
 from extractors.bodies.bodies import BodyGeometry, geometry_of
-from extractors.faults.free_flight import Flight, flights
+from extractors.faults.gravity import Flight, flights
 from extractors.thresholds import Thresholds
 
 T = Thresholds()

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from capar.model.errors import CaparError, CaptureError, FileError
-from extractors.readers.bundle import mesh
-from extractors.readers.bundle.mesh import MESH_LIMIT, read_mesh
+from extractors.readers.bundle import shapes
+from extractors.readers.bundle.shapes import MESH_LIMIT, read_mesh
 from extractors.readers.files import EXPANDED_LIMIT
 from extractors.readers.registry import read_recording
 
@@ -95,7 +95,7 @@ def test_a_mesh_is_refused_only_if_it_is_larger_than_the_limit(
 ) -> None:
     path = tmp_path / "m.obj"
     path.write_text(TRIANGLE)
-    monkeypatch.setattr(mesh, "MESH_LIMIT", path.stat().st_size)
+    monkeypatch.setattr(shapes, "MESH_LIMIT", path.stat().st_size)
     assert len(read_mesh(path)[1]) == 1
     path.write_text(TRIANGLE + "\n")
     with pytest.raises(FileError, match="is a mesh of more than"):

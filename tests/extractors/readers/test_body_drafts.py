@@ -12,9 +12,9 @@ from scipy.spatial.transform import Rotation
 from capar.model.capture import Capture, TagType
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
-from extractors.readers.body_names.body_names import body_names
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.drafting.draft import EDIT, draft
+from extractors.readers.names import body_names
 from extractors.readers.registry import read_recording
 
 DATA = Path(os.environ.get("CAPAR_DATA", Path(__file__).parents[4] / "shared" / "data"))

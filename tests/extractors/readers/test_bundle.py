@@ -9,8 +9,8 @@ import pytest
 from capar.model import geometry
 from capar.model.capture import Capture, Role, ShapeSource, Source
 from capar.model.errors import CaparError, CaptureError, FileError, UnknownNameError
+from extractors.readers.bundle.bodies import to_world
 from extractors.readers.bundle.capture_toml import frame_times, read_capture, takes
-from extractors.readers.bundle.world import to_world
 from extractors.readers.recording import Recording
 
 BASE = """name = "trial"

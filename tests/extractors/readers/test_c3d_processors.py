@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from extractors.readers.formats.c3d_layout import reals
+from extractors.readers.formats.c3d import reals
 from extractors.readers.registry import read_recording
 
 PLACES_MM = np.array([[[1.0, -2.5, 900.0]], [[1.5, -2.0, 901.0]], [[2.5, 1e-3, 902.5]]])

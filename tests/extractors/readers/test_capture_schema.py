@@ -17,11 +17,9 @@ from capar.model.errors import CaparError
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.recording import UNITS
 from extractors.readers.registry import READER_OPTIONS
-from extractors.readers.schema.bodies import ObjectEntry, SensorEntry
-from extractors.readers.schema.capture import MotionFile, Up
+from extractors.readers.schema.capture import SHAPES, MotionFile, ObjectEntry, SensorEntry, Unit, Up
 from extractors.readers.schema.entry import Entry
 from extractors.readers.schema.reference import TABLES, json_schema, reference
-from extractors.readers.schema.shapes import SHAPES, Unit
 
 ROOT = Path(__file__).resolve().parents[3]
 CAPTURES = sorted([*ROOT.glob("examples/*/capture.toml"), *ROOT.glob("capar/demo/*/capture.toml")])

@@ -9,7 +9,7 @@ import trimesh
 
 from capar.model.errors import CaptureError, FileError, UnknownNameError
 from extractors.readers.bundle.capture_toml import files_of, read_capture
-from extractors.readers.bundle.mesh import open_edges
+from extractors.readers.bundle.shapes import open_edges
 from extractors.readers.registry import read_recording
 
 TRIAL = """unit = "m"

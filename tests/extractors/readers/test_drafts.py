@@ -8,7 +8,7 @@ import pytest
 from capar.model.capture import Source
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.drafting.draft import EDIT, draft
-from extractors.readers.name_guesses import standing
+from extractors.readers.names import standing
 from extractors.readers.recording import Recording, track
 from extractors.readers.registry import read_recording
 

@@ -10,7 +10,7 @@ from capar.model.capture import Source
 from capar.model.errors import CaparError
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.drafting.draft import draft
-from extractors.readers.name_guesses import limbs, part_of
+from extractors.readers.names import limbs, part_of
 from extractors.readers.recording import Recording, track
 
 PALM = """name = "trial"

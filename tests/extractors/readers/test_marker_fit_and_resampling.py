@@ -9,8 +9,13 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import Stream
 from capar.model.errors import CaptureError
-from extractors.readers.bundle.marker_fit import Cluster, arrangement, fit_cluster
-from extractors.readers.bundle.resampling import resampled, shared_clock
+from extractors.readers.bundle.bodies import (
+    Cluster,
+    arrangement,
+    fit_cluster,
+    resampled,
+    shared_clock,
+)
 from extractors.readers.formats.bvh import Joint, forward
 
 SEEDS = st.integers(0, 2**32 - 1)

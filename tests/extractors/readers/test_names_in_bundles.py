@@ -6,8 +6,7 @@ import motion_files as samples
 import pytest
 
 from capar.model.errors import CaparError, CaptureError, FileError
-from extractors.readers.bundle.capture_toml import read_capture
-from extractors.readers.bundle.location import find_place
+from extractors.readers.bundle.capture_toml import find_place, read_capture
 
 TRIAL = """name = "trial"
 unit = "m"

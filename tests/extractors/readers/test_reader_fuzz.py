@@ -13,11 +13,10 @@ from hypothesis import strategies as st
 
 from capar.model.errors import CaparError
 from extractors.readers.bundle.capture_toml import read_capture
-from extractors.readers.bundle.mesh import read_mesh
+from extractors.readers.bundle.shapes import read_mesh
 from extractors.readers.registry import read_recording
 from extractors.readers.schema.capture import CaptureFile
-from extractors.readers.schema.document import line_numbers, validated
-from extractors.readers.schema.entry import Location
+from extractors.readers.schema.entry import Location, line_numbers, validated
 from extractors.readers.schema.reference import TABLES
 
 EDITS = st.lists(

@@ -11,7 +11,7 @@ from capar.cli import app
 from capar.model.capture import Source, recorded_at
 from capar.model.errors import CaparError
 from extractors.readers.bundle.capture_toml import read_capture
-from extractors.readers.recorded_times import iso_of_stamp, iso_time
+from extractors.readers.recording import iso_of_stamp, iso_time
 from extractors.readers.registry import read_recording
 from kb import Actionary
 from ontology import CAPAR

@@ -9,11 +9,15 @@ from marker_people import walker, write_trc
 from scipy.spatial.transform import Rotation
 
 from capar.pipelines.observation import observe
-from extractors.readers.body_names.body_names import SIDES, body_names
-from extractors.readers.body_names.conventions import conventions, recognise
-from extractors.readers.body_names.spelling import key_of
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.drafting.draft import EDIT, draft
+from extractors.readers.names import (
+    SIDES,
+    body_names,
+    conventions,
+    key_of,
+    recognise,
+)
 from extractors.readers.registry import read_recording
 
 SPELLINGS: dict[str, Callable[[str], str]] = {

@@ -1,0 +1,547 @@
+"""What was announced and what is settled: segments, facts, and what rules are told again."""
+
+from bisect import bisect_left
+from collections import defaultdict, deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from functools import cache
+from inspect import get_annotations
+from types import MappingProxyType
+from typing import Any, cast
+
+from capar.model.facts import (
+    DrawsBack,
+    Fact,
+    Moving,
+    Observed,
+    Phase,
+    Place,
+    ReleaseSpeed,
+    Resting,
+    Reverses,
+    Rides,
+    Span,
+    Touching,
+    TrunkPlace,
+)
+from capar.model.observation import ObservedLink, Segment
+from capar_rules.pars.inference import Conditions, Inference
+
+
+class Status(StrEnum):
+    """How sure an announcement is."""
+
+    PROVISIONAL = "provisional"
+    """The segment has ended; later frames may still change it."""
+
+    REVISED = "revised"
+    """It is told otherwise than it was announced, within the horizon."""
+
+    WITHDRAWN = "withdrawn"
+    """What was announced as ended goes on, or is part of another segment."""
+
+    SETTLED = "settled"
+    """It is told for good: name, objects, begin and end."""
+
+    PURPOSE = "purpose"
+    """What a settled segment was for, now that the next one is settled: where nobody states a
+    purpose, it is the action that follows."""
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentEvent:
+    """One announcement about one segment."""
+
+    status: Status
+    segment: Segment
+    """With its number in the link and its times since the first frame."""
+
+    time_s: float
+    """Time of the newest frame when it was announced [s]."""
+
+    sentence: str = ""
+    """What was done, in plain English; empty where nothing was touched."""
+
+    @property
+    def late_s(self) -> float:
+        """How long after the end of the segment it was announced [s]."""
+        return self.time_s - self.segment.end_s
+
+
+def event_row(event: SegmentEvent) -> dict[str, Any]:
+    """An announcement as one JSON object; times in seconds since the first frame."""
+    segment = event.segment
+    return {
+        "event": event.status.value,
+        "segment": f"{segment.ee}/{segment.index}",
+        "name": segment.name,
+        "objects": list(segment.objects),
+        "purpose": segment.purpose,
+        "start_s": round(segment.start_s, 6),
+        "end_s": round(segment.end_s, 6),
+        "time_s": round(event.time_s, 6),
+        "late_s": round(event.late_s, 6),
+        "sentence": event.sentence,
+    }
+
+
+Key = tuple[object, ...]
+"""What an interval is of: its kind and its bodies, whenever it is."""
+
+AT_THE_END = (ReleaseSpeed, Rides)
+"""Kinds that name a contact by its first frame and are measured up to its end."""
+
+OF_A_MOTION = (Reverses, DrawsBack, Phase)
+"""Kinds that are sought within a motion as a whole: that a thing has come down tells where it was
+highest. They are settled with the motion."""
+
+FRAMES = ("frame", "first", "last")
+
+
+@dataclass(frozen=True, slots=True)
+class _Open:
+    """An interval that goes on beyond the frontier."""
+
+    first: int
+    named: tuple[Observed, ...]
+    """Facts that name it, as they were measured when its beginning was in the window."""
+
+
+class FactLedger:
+    """What is settled up to a frame, the frontier, and the intervals that go on there.
+
+    A later window may begin within an interval: it is then continued by its true beginning.
+    """
+
+    def __init__(self) -> None:
+        self.frontier = -1
+        self._open: dict[Key, _Open] = {}
+        self._told: set[tuple[Key, int]] = set()
+        """The instants that were settled since the earliest motion began that goes on."""
+
+    def begin_of(self, kinds: tuple[type[Observed], ...]) -> int | None:
+        """The first frame of the intervals of some kinds that go on; None without any."""
+        return min((own.first for key, own in self._open.items() if key[0] in kinds), default=None)
+
+    def stitched(self, facts: Iterable[Fact], begin: int) -> list[Observed]:
+        """Facts of a window in frames of the recording, with intervals from their beginning.
+
+        Facts that are settled are left out, and so are those that hold always.
+
+        Args:
+            facts: Facts of the window, in its own frames.
+            begin: The frame of the recording with which the window begins.
+        """
+        observed = [fact for fact in facts if isinstance(fact, Observed)]
+        of_motions = (_moved(fact, begin) for fact in observed if isinstance(fact, OF_A_MOTION))
+        late = {fact.ends()[0] for fact in of_motions if self._is_late(fact)}
+        # Most facts are of single frames, and most of them are settled.
+        seen = [
+            _moved(fact, begin)
+            for fact in observed
+            if fact.declaration.span is not Span.INSTANT
+            or (at := fact.ends()[0] + begin) > self.frontier
+            or (at in late and (_key(fact), at) not in self._told)
+        ]
+        firsts = self._firsts(seen)
+        own = {(_key(fact), fact.ends()[0]) for fact in seen if _is_interval(fact)}
+        continued = {place for place in own if firsts.get(place, place[1]) != place[1]}
+        ended = {(_key(fact), fact.ends()[0]) for fact in seen if self._has_ended(fact)}
+        out: list[Observed] = []
+        for fact in seen:
+            span = fact.declaration.span
+            if span is Span.INSTANT:
+                out.append(fact)
+            elif span is Span.INTERVAL and (not self._has_ended(fact) or self._is_late(fact)):
+                out.append(_begun(fact, firsts.get((_key(fact), fact.ends()[0]))))
+            elif not isinstance(span, Span):
+                place = (_key_of_named(fact), fact.ends()[0])
+                if place in ended or (place in continued and not isinstance(fact, AT_THE_END)):
+                    continue
+                out.append(_begun(fact, firsts.get(place)))
+        for key, _ in continued:
+            out += [each for each in self._open[key].named if not isinstance(each, AT_THE_END)]
+        return list(dict.fromkeys(out))
+
+    def settle(self, stitched: Sequence[Observed], frontier: int) -> list[Observed]:
+        """Move the frontier; what ends no later is settled, and returned.
+
+        Args:
+            stitched: What ``stitched`` gave.
+            frontier: The last frame that no later frame can change.
+        """
+        done: list[Observed] = []
+        going: dict[Key, _Open] = {}
+        ended: set[tuple[Key, int]] = set()
+        named: dict[tuple[Key, int], list[Observed]] = {}
+        for fact in stitched:
+            if not isinstance(fact.declaration.span, Span):
+                named.setdefault((_key_of_named(fact), fact.ends()[0]), []).append(fact)
+        moves = {
+            fact.object: fact.first
+            for fact in stitched
+            if isinstance(fact, Moving) and fact.first <= frontier < fact.last
+        }
+        for fact in stitched:
+            span, ends = fact.declaration.span, fact.ends()
+            if isinstance(fact, OF_A_MOTION) and ends[0] >= moves.get(fact.object, frontier + 1):
+                continue
+            if span is Span.INSTANT and ends[0] <= frontier:
+                done.append(fact)
+                self._told.add((_key(fact), ends[0]))
+            elif span is Span.INTERVAL:
+                place = (_key(fact), ends[0])
+                if ends[-1] <= frontier:
+                    done.append(fact)
+                    done += named.get(place, ())
+                    ended.add(place)
+                elif ends[0] <= frontier:
+                    going[place[0]] = _Open(ends[0], tuple(named.get(place, ())))
+        self._open, self.frontier = going, frontier
+        oldest = min(moves.values(), default=frontier + 1)
+        self._told = {told for told in self._told if told[1] >= oldest}
+        return done
+
+    def _firsts(self, seen: Iterable[Observed]) -> dict[tuple[Key, int], int]:
+        """The true first frames of intervals that were going on at the frontier."""
+        out: dict[tuple[Key, int], int] = {}
+        for fact in seen:
+            known = self._continued(fact)
+            if known is not None:
+                out[_key(fact), fact.ends()[0]] = known.first
+        return out
+
+    def _continued(self, fact: Observed) -> _Open | None:
+        """The interval that went on at the frontier and that a fact tells of; None without one.
+
+        Its end may be told a frame sooner than before, and so be at the frontier or before it.
+        """
+        if not _is_interval(fact) or fact.ends()[0] > self.frontier:
+            return None
+        known = self._open.get(_key(fact))
+        return known if known is not None and fact.ends()[-1] >= known.first else None
+
+    def _is_late(self, fact: Observed) -> bool:
+        """Whether it is of a motion that goes on, and is not settled though its frames are."""
+        if not isinstance(fact, OF_A_MOTION) or fact.ends()[-1] > self.frontier:
+            return False
+        motion = self._open.get((Moving, fact.object))
+        return motion is not None and fact.ends()[0] >= motion.first
+
+    def _has_ended(self, fact: Observed) -> bool:
+        """Whether it is an interval that was settled before."""
+        ended = _is_interval(fact) and fact.ends()[-1] <= self.frontier
+        return ended and self._continued(fact) is None
+
+
+def _is_interval(fact: Observed) -> bool:
+    return fact.declaration.span is Span.INTERVAL
+
+
+def _key(fact: Observed) -> Key:
+    """The kind of an interval and its bodies: what it measures besides is no part of it."""
+    bodies, _ = _layout(cast(Any, type(fact)))
+    return type(fact), *(getattr(fact, name) for name in bodies)
+
+
+@cache
+def _layout(kind: type[Observed]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The fields of a kind of fact that hold text, and those that hold frames."""
+    known = get_annotations(kind)
+    frames = () if kind.declaration.span is Span.ALWAYS else FRAMES
+    texts = tuple(name for name, of in known.items() if of is str)
+    return texts, tuple(name for name in known if name in frames)
+
+
+def _key_of_named(fact: Observed) -> Key:
+    """The key of the interval that a fact names."""
+    kind, *values = fact.name(cast(Any, fact.declaration.span))
+    return kind, *(each for each in values if isinstance(each, str))
+
+
+def _moved(fact: Observed, by: int) -> Observed:
+    _, frames = _layout(cast(Any, type(fact)))
+    if not by or not frames:
+        return fact
+    changed = {name: getattr(fact, name) + by for name in frames}
+    return cast(Observed, replace(cast(Any, fact), **changed))
+
+
+def _begun(fact: Observed, first: int | None) -> Observed:
+    return fact if first is None else cast(Observed, replace(cast(Any, fact), first=first))
+
+
+@dataclass(frozen=True, slots=True)
+class SettledSegment:
+    """A segment as it was settled, with what the rules derived for its PAR."""
+
+    segment: Segment
+    conditions: Conditions
+    no_step: bool
+
+
+@dataclass
+class Contradictions:
+    """How often a later answer differed from what was settled; the settled one stays."""
+
+    names: int = 0
+    borders: int = 0
+
+
+@dataclass
+class _Link:
+    count: int = 0
+    end: int = 0
+    """The last frame of the last settled segment."""
+
+    recent: deque[SettledSegment] = field(default_factory=deque)
+    announced: dict[int, Segment] = field(default_factory=dict)
+    due: tuple[int, ...] = ()
+    """The frontiers at which the segments that were found to have ended are settled at the latest,
+    so that those which end one soon after the other are settled at once."""
+
+
+class SegmentLedger:
+    """Takes one answer of the rules after the other, and tells what is new.
+
+    Args:
+        kept: How many settled segments of a link are remembered.
+        later: By how many frames later than others a segment is settled that ends with such a kind
+            of event.
+    """
+
+    def __init__(self, kept: int, later: Mapping[str, int] = MappingProxyType({})) -> None:
+        self._kept = kept
+        self._later = later
+        self._links: dict[str, _Link] = {}
+        self.contradictions = Contradictions()
+
+    def recent(self, ee: str) -> Sequence[SettledSegment]:
+        """The last settled segments of a link, in time."""
+        return self._links[ee].recent if ee in self._links else ()
+
+    def ends(self) -> list[int]:
+        """The last frame of the last settled segment of each link: the next one begins there."""
+        return sorted({link.end for link in self._links.values()})
+
+    def first_needed(self, now: int) -> int:
+        """The frame from which rules have to see, so that every link's last segments are told."""
+        starts = [
+            link.recent[0].segment.first if link.recent else 0 for link in self._links.values()
+        ]
+        return min(starts, default=now if self._links else 0)
+
+    def next_due(self, after: int) -> int | None:
+        """The first frontier later than one at which a segment has to be settled that was found."""
+        due = (frontier for link in self._links.values() for frontier in link.due)
+        return min((frontier for frontier in due if frontier > after), default=None)
+
+    def take(
+        self,
+        inference: Inference,
+        *,
+        now: int,
+        ended: int,
+        frontier: int,
+        rate_hz: float,
+        time_s: float,
+        undecided: Mapping[str, int] = MappingProxyType({}),
+        unseen: Mapping[str, int] = MappingProxyType({}),
+    ) -> tuple[list[SegmentEvent], list[SettledSegment]]:
+        """What an answer says that was not said before, and which segments it settles.
+
+        Args:
+            inference: Segments in frames of the recording.
+            now: The newest frame: segments that end there go on.
+            ended: Segments that end no later are announced, if they are not settled.
+            frontier: Segments that end no later are settled, but for those that wait ``later``; at
+                the recording's end, ``now``, all are.
+            rate_hz: Frames a second [Hz].
+            time_s: Time of the newest frame [s].
+            undecided: Of a link, the frame from which on no segment ends that may be settled yet.
+            unseen: Of a link, the frame from which on none ends that may be announced.
+        """
+        events: list[SegmentEvent] = []
+        done: list[SettledSegment] = []
+        for link in inference.links:
+            own = self._links.setdefault(link.ee, _Link())
+            found = list(self._unsettled(own, link, rate_hz))
+            settled = 0
+            if found and own.recent and self._due(found[0][1]) <= frontier:
+                amended = self._with_purpose(own, link)
+                if amended is not None:
+                    events.append(SegmentEvent(Status.PURPOSE, amended.segment, time_s))
+                    done.append(amended)
+            for local, segment in found:
+                if segment.last >= undecided.get(link.ee, now + 1):
+                    break
+                if self._due(segment) > frontier and frontier < now:
+                    break
+                settled += 1
+                key = (link.ee, local)
+                each = SettledSegment(segment, inference.conditions[key], key in inference.no_steps)
+                events.append(SegmentEvent(Status.SETTLED, segment, time_s))
+                done.append(each)
+                self._settle(own, each)
+            latest = max(self._later.values(), default=0)
+            own.due = tuple(each.last + latest for _, each in found[settled:] if each.last < now)
+            upto = min(ended, unseen.get(link.ee, now + 1) - 1)
+            told = {each.index: each for _, each in found[settled:] if each.last <= upto}
+            events += _announced(own, told, time_s)
+        return events, done
+
+    def _due(self, segment: Segment) -> int:
+        """The frontier at which a segment is settled."""
+        return segment.last + max(self._later.get(border.kind, 0) for border in segment.ends)
+
+    def _with_purpose(self, own: _Link, link: ObservedLink) -> SettledSegment | None:
+        """The last settled segment with what it was for, where that was not known before."""
+        known = own.recent[-1]
+        for latest in link.segments:
+            if _same(latest, known.segment) and latest.purpose != known.segment.purpose:
+                amended = replace(known, segment=replace(known.segment, purpose=latest.purpose))
+                own.recent[-1] = amended
+                return amended
+        return None
+
+    def _settle(self, own: _Link, each: SettledSegment) -> None:
+        own.announced.pop(each.segment.index, None)
+        own.count, own.end = each.segment.index + 1, each.segment.last
+        own.recent.append(each)
+        if len(own.recent) > self._kept:
+            own.recent.popleft()
+
+    def _unsettled(
+        self, own: _Link, link: ObservedLink, rate_hz: float
+    ) -> Iterator[tuple[int, Segment]]:
+        """The segments after the last settled one, numbered on from it, by their own number."""
+        index, begin = own.count, own.end
+        for local, segment in enumerate(link.segments):
+            if segment.last <= own.end or (segment.first < own.end and _mostly(segment, own.end)):
+                self._compare(own, segment)
+                continue
+            borders = segment.begins
+            if own.recent and segment.first != begin:
+                borders = own.recent[-1].segment.ends
+            start_s = begin / rate_hz
+            yield (
+                local,
+                replace(segment, index=index, first=begin, start_s=start_s, begins=borders),
+            )
+            index, begin = index + 1, segment.last
+
+    def _compare(self, own: _Link, segment: Segment) -> None:
+        """Count where a later answer tells of one of the last two settled segments otherwise.
+
+        Of what is farther back, rules are told too little to say anything.
+        """
+        for settled in list(own.recent)[-2:]:
+            known = settled.segment
+            if known.first <= (segment.first + segment.last) // 2 <= known.last:
+                self.contradictions.names += int(known.name != segment.name)
+                self.contradictions.borders += int(known.last != segment.last)
+                return
+
+
+def _same(one: Segment, other: Segment) -> bool:
+    return (one.name, one.objects, one.last) == (other.name, other.objects, other.last)
+
+
+def _mostly(segment: Segment, end: int) -> bool:
+    """Whether more of a segment lies before a frame than after it."""
+    return end - segment.first > segment.last - end
+
+
+def _announced(own: _Link, ended: dict[int, Segment], time_s: float) -> Iterator[SegmentEvent]:
+    for index, segment in ended.items():
+        before = own.announced.get(index)
+        if before is None:
+            yield SegmentEvent(Status.PROVISIONAL, segment, time_s)
+        elif _told(before) != _told(segment):
+            yield SegmentEvent(Status.REVISED, segment, time_s)
+    for index, segment in own.announced.items():
+        if index not in ended and index >= own.count:
+            yield SegmentEvent(Status.WITHDRAWN, segment, time_s)
+    own.announced = dict(ended)
+
+
+def _told(segment: Segment) -> tuple[object, ...]:
+    return segment.name, segment.objects, segment.first, segment.last
+
+
+SAME_PLACE_MM = 10
+"""Postures at rest nearer to each other than this along every axis are one [mm]."""
+
+
+class RuleMemory:
+    """Facts of the last few segments, and of the places where an end-effector rested before.
+
+    Rules ask whether a hand is back where it was before it acted, however long ago: the first
+    frame, and rests at other places than those that are known, stay.
+    """
+
+    def __init__(self) -> None:
+        self._facts: list[Observed] = []
+        self._postures: dict[tuple[object, ...], tuple[Observed, ...]] = {}
+
+    def __iter__(self) -> Iterator[Observed]:
+        """The facts, each once."""
+        remembered = (each for facts in self._postures.values() for each in facts)
+        return iter(dict.fromkeys((*remembered, *self._facts)))
+
+    def add(self, facts: Iterable[Observed]) -> None:
+        """Take facts that were settled."""
+        self._facts += facts
+
+    def forget(self, begin: int, borders: Sequence[int], margin: int) -> None:
+        """Drop what rules do not need again.
+
+        Args:
+            begin: The frame from which on everything is kept.
+            borders: Frames at which segments begin that go on; what ends near them is kept.
+            margin: How many frames away is near.
+        """
+        at = sorted(borders)
+        kept: list[Observed] = []
+        gone: list[Observed] = []
+        for fact in self._facts:
+            ends = fact.ends()
+            needed = ends[-1] >= begin - margin or any(_is_near(end, at, margin) for end in ends)
+            (kept if needed else gone).append(fact)
+        self._facts = kept
+        if gone:
+            self._remember(gone)
+
+    def _remember(self, gone: Sequence[Observed]) -> None:
+        """Keep the places of an end-effector at rest, with what it touched meanwhile."""
+        places = {(fact.body, fact.frame): fact for fact in gone if isinstance(fact, Place)}
+        by_trunk = {(fact.body, fact.frame): fact for fact in gone if isinstance(fact, TrunkPlace)}
+        touching: dict[str, list[Touching]] = defaultdict(list)
+        for fact in gone:
+            if isinstance(fact, Touching):
+                touching[fact.body].append(fact)
+        postures = {
+            at: (place, *((by_trunk[at],) if at in by_trunk else ()))
+            for at, place in places.items()
+        }
+        for (body, frame), posture in postures.items():
+            if frame == 0:
+                self._postures.setdefault((body, "first"), posture)
+        for fact in gone:
+            if isinstance(fact, Resting) and (fact.ee, fact.last) in postures:
+                posture = postures[fact.ee, fact.last]
+                met = (
+                    touch
+                    for touch in touching[fact.ee]
+                    if touch.first <= fact.last and fact.first <= touch.last
+                )
+                axes = (axis for place in posture for axis in (place.x, place.y, place.z))
+                cell = tuple(round(axis / SAME_PLACE_MM) for axis in axes)
+                self._postures.setdefault((fact.ee, *cell), (fact, *posture, *met))
+
+
+def _is_near(frame: int, borders: Sequence[int], margin: int) -> bool:
+    """Whether one of some frames in order is so near to a frame."""
+    following = bisect_left(borders, frame - margin)
+    return following < len(borders) and borders[following] <= frame + margin

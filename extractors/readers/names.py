@@ -1,0 +1,576 @@
+"""Which place of a body each name in a motion file means, by conventions and by words."""
+
+import re
+import tomllib
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from functools import cache, cached_property
+from importlib.resources import files
+from itertools import pairwise, takewhile
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from capar.model.errors import CaparError, UnknownNameError
+from extractors.readers.recording import UNITS, Recording
+
+SHARED_BY = 8
+"""A beginning or an ending up to a separator that so many names share is none of their own [1]."""
+
+COMMON_LETTERS = 3
+"""... and one of so many letters, without a separator, is not if all names share it [1]."""
+
+SIDE_AFFIXES = {"r", "l", "right", "left", "rt", "lt"}
+"""What names of one side share, and what belongs to them."""
+
+
+def key_of(name: str) -> str:
+    """A name without its separators and capitals: ``R.Knee_Lat`` and ``rKneeLat`` are one."""
+    return re.sub(r"[\W_]+", "", name).lower()
+
+
+def split_name(name: str) -> tuple[str, str]:
+    """The subject before the last colon, and the rest of a name."""
+    subject, _, bare = name.rpartition(":")
+    return subject, bare
+
+
+def spellings(names: Iterable[str]) -> dict[str, list[tuple[str, str]]]:
+    """For each name, the subjects and bare names that it may consist of, least taken off first.
+
+    ``Anna:LASI`` is Anna's; ``Anna_LASI`` may be, if other names begin so too; ``r_knee_study`` may
+    be an ``r_knee`` if others end so.
+    """
+    split = {name: split_name(name) for name in names}
+    bares = list(dict.fromkeys(bare for _, bare in split.values()))
+    beginnings, endings = _beginnings(bares), _endings(bares)
+    out = {}
+    for name, (subject, bare) in split.items():
+        found = [(subject, bare)]
+        for ending in ("", *(each for each in endings if bare.endswith(each))):
+            whole = bare.removesuffix(ending)
+            found.append((subject, whole))
+            found += [
+                (subject or own.strip("_ .-"), whole.removeprefix(own))
+                for own in beginnings
+                if whole.startswith(own)
+            ]
+        out[name] = [each for each in dict.fromkeys(found) if each[1]]
+    return out
+
+
+def _beginnings(names: list[str]) -> list[str]:
+    """What many names begin with up to a separator, and what all begin with; shortest first."""
+    counts = Counter(name[: at.end()] for name in names for at in re.finditer(r"[_ .\-]+", name))
+    shared = {each for each, count in counts.items() if count >= SHARED_BY and not _is_side(each)}
+    letters = takewhile(lambda column: len(set(column)) == 1, zip(*names, strict=False))
+    whole = "".join(column[0] for column in letters)
+    if len(names) >= SHARED_BY and len(whole) >= COMMON_LETTERS:
+        shared.add(whole)
+    return sorted(shared, key=len)
+
+
+def _endings(names: list[str]) -> list[str]:
+    """What many names end with from a separator on; shortest first."""
+    counts = Counter(name[at.start() :] for name in names for at in re.finditer(r"[_ .\-]+", name))
+    shared = (each for each, count in counts.items() if count >= SHARED_BY and not _is_side(each))
+    return sorted(shared, key=len)
+
+
+def _is_side(affix: str) -> bool:
+    return key_of(affix) in SIDE_AFFIXES
+
+
+def matched(
+    spelled: Mapping[str, list[tuple[str, str]]], keys: Mapping[str, str]
+) -> dict[str, tuple[str, str]]:
+    """The subject and the known name of each name of which a spelling is known.
+
+    Args:
+        spelled: As ``spellings`` gives them.
+        keys: Known names by their keys.
+    """
+    out = {}
+    for name, options in spelled.items():
+        for subject, bare in options:
+            if key_of(bare) in keys:
+                out[name] = (subject, keys[key_of(bare)])
+                break
+    return out
+
+
+LEAST_SHARE = 0.7
+"""Share of a convention's names that a recording has to have to be taken for it [1]."""
+
+
+class ConventionError(CaparError):
+    """Names that are of no known convention."""
+
+
+@dataclass(frozen=True)
+class Convention:
+    """Names of joints or key points, and the places on the body that they mean."""
+
+    name: str
+    title: str
+    source: str
+    oriented: bool
+    """Whether its files give orientations; else those of segments are derived from points."""
+
+    markers: bool
+    """Whether its names are those of markers on the skin, not of joints or key points."""
+
+    points: Mapping[str, str]
+    """Segment (its joint with the parent) or site of the body, by foreign name."""
+
+    weights: Mapping[str, float]
+    """How much a place counts, where it is not 1 [1]."""
+
+    on: Mapping[str, str] = field(default_factory=dict)
+    """Segment by the name of a marker that rides somewhere on it."""
+
+    computed: tuple[str, ...] = ()
+    """Patterns of names that its files give to computed quantities, which are no markers."""
+
+    units_m: tuple[float, ...] = ()
+    """Units that its files are in without stating them [m]."""
+
+    whole_names: bool = False
+    """Whether prefixes up to a colon belong to its names."""
+
+    def named(self, names: Iterable[str]) -> dict[str, str]:
+        """The place of each name that it knows, however it is spelled, whoever's it is."""
+        if self.whole_names:
+            return {name: self.points[name] for name in names if name in self.points}
+        found = matched(spellings(names), self.keys)
+        return {n: self.points[known] for n, (_, known) in found.items() if known in self.points}
+
+    @cached_property
+    def keys(self) -> Mapping[str, str]:
+        """Its names by their keys; names of different places that have one key are left out."""
+        places: dict[str, set[str]] = {}
+        for name, place in (*self.points.items(), *self.on.items()):
+            places.setdefault(key_of(name), set()).add(place)
+        return {
+            key_of(name): name
+            for name in (*self.points, *self.on)
+            if len(places[key_of(name)]) == 1
+        }
+
+    def weight(self, place: str) -> float:
+        """How much a place counts [1]."""
+        return self.weights.get(place, 1.0)
+
+
+@cache
+def conventions() -> Mapping[str, Convention]:
+    """Every convention by name."""
+    folder = files("extractors.readers") / "data" / "conventions"
+    out = {}
+    for file in sorted(folder.iterdir(), key=lambda each: each.name):
+        if file.name.endswith(".toml"):
+            name = file.name.removesuffix(".toml")
+            out[name] = _convention(name, tomllib.loads(file.read_text("utf-8")))
+    return out
+
+
+def _convention(name: str, row: Mapping[str, Any]) -> Convention:
+    return Convention(
+        name,
+        row["title"],
+        row["source"],
+        oriented=row["orientations"] == "given",
+        markers=row["orientations"] == "markers",
+        points=dict(_both_sides(row["points"])),
+        weights=row.get("weights", {}),
+        on=dict(_both_sides(row.get("on", {}))),
+        computed=tuple(row.get("computed", ())),
+        units_m=tuple(row.get("units_m", ())),
+    )
+
+
+def _both_sides(names: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Names with their places; those with a placeholder of a side once for each side."""
+    for name, place in names.items():
+        for side in ("right", "left") if "{" in name else ("none",):
+            letter = side[0]
+            own = name.format(S=letter.upper(), s=letter, Side=side.title())
+            yield own, place.format(side=side)
+
+
+def convention(name: str) -> Convention:
+    """The convention of that name.
+
+    Raises:
+        UnknownNameError: There is none.
+    """
+    if name not in conventions():
+        raise UnknownNameError("convention", name, conventions())
+    return conventions()[name]
+
+
+def coverage(names: Iterable[str]) -> dict[str, float]:
+    """By convention, the share of its places that some names are of [1]."""
+    known = list(names)
+    return {
+        each.name: len(set(each.named(known).values())) / len(set(each.points.values()))
+        for each in conventions().values()
+    }
+
+
+def recognise(names: Iterable[str]) -> Convention:
+    """The convention that a recording's names are of: the one of which it has most places.
+
+    Raises:
+        ConventionError: It has too few of any.
+    """
+    known = list(names)
+    shares = coverage(known)
+    size = {name: len(convention(name).named(known)) for name in shares}
+    fits = [name for name, share in shares.items() if share >= LEAST_SHARE]
+    if not fits:
+        best = max(shares, key=lambda name: shares[name])
+        missing = sorted(set(convention(best).points) - {n.rpartition(":")[2] for n in known})
+        raise ConventionError(
+            f"names of no known convention; nearest is {best!r}, of which there are "
+            f"{shares[best]:.0%}, without {', '.join(missing[:6])}; known: {', '.join(shares)}"
+        )
+    return convention(max(fits, key=lambda name: (size[name], shares[name])))
+
+
+HEIGHT_M = (0.85, 2.0)
+"""How far the head's joint or markers are above the feet of people of 1.0 to 2.2 m [m]."""
+
+USUAL_M = 1.4
+"""That height of an adult of whom nothing is known [m]."""
+
+STATURE_M = (1.0, 2.2)
+"""How tall people are, from children of four years on [m]."""
+
+USUAL_STATURE_M = 1.7
+"""How tall an adult is of whom nothing is known [m]."""
+
+CLEAR = 2.0
+"""The upward axis is clear if the body is so many times longer along it than along another."""
+
+LIMBS = {
+    "hand": ("hand", "wrist", "palm", "main"),
+    "head": ("head", "skull", "camera", "hmd"),
+    "foot": ("foot", "ankle", "toe"),
+}
+"""Words in names by which end-effectors are known."""
+
+PARTS = {
+    "hand": ("hand", "wrist", "palm", "carpal", "metacarpal", "thumb", "index", "middle", "ring",
+             "pinky", "little", "finger", "fingers", "fingertip", "fingertips"),
+    "foot": ("foot", "ankle", "heel", "calcaneus", "instep", "midfoot", "sole", "forefoot",
+             "toe", "toes"),
+}  # fmt: skip
+"""What hands and feet consist of, in the words of names; those that act for the whole first."""
+
+AMBIGUOUS = {"index", "middle", "ring", "little"}
+"""Words for fingers that name other things too."""
+
+WHOLES = {"hand": ("hand", "wrist"), "foot": ("foot", "ankle")}
+"""Words that name a hand or foot as a whole, and not a part of it."""
+
+_SIDES = {
+    "right": re.compile(
+        r"right|(^|[_.\W])[rR]([_.\W]|$)|^r(?=[A-Z])|[a-z]Rt?$|^R(?=[A-Z_])|(?<=[a-z])R$|_r$"
+    ),
+    "left": re.compile(
+        r"left|(^|[_.\W])[lL]([_.\W]|$)|^l(?=[A-Z])|[a-z]Lf?t?$|^L(?=[A-Z_])|(?<=[a-z])L$|_l$"
+    ),
+}
+
+
+def limb_of(name: str) -> str:
+    """The end-effector that a name mentions, or an empty string."""
+    low = name.lower()
+    return next((limb for limb, words in LIMBS.items() if any(w in low for w in words)), "")
+
+
+def words_of(name: str) -> list[str]:
+    """The words of a name, in lower case and without numbers: ``L_Index1`` has ``l``, ``index``."""
+    parts = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name)
+    return [word for word in re.split(r"[^a-z]+", parts.lower()) if word]
+
+
+def part_of(name: str) -> tuple[str, int] | None:
+    """Which hand or foot a name is a part of, and how far from acting for it; None for no part.
+
+    The palm stands before the fingers and the heel before the toes.
+    """
+    for limb, words in PARTS.items():
+        ranks = [words.index(word) for word in words_of(name) if word in words]
+        if ranks:
+            return limb, min(ranks)
+    return None
+
+
+def limbs(names: Iterable[str]) -> dict[str, str]:
+    """The bodies that are likely end-effectors or parts of one, each with its hand, foot or head.
+
+    Words that mean other things too, such as ``ring``, count where the same side has another part
+    of a hand.
+    """
+    out: dict[str, str] = {}
+    doubtful = []
+    for name in names:
+        part = part_of(name) if side_of(name) != "none" else None
+        if part and set(words_of(name)) & AMBIGUOUS and not limb_of(name):
+            doubtful.append(name)
+        elif limb := limb_of(name) or (part[0] if part else ""):
+            out[name] = limb
+    hands = {side_of(name) for name, limb in out.items() if limb == "hand"}
+    return out | {name: "hand" for name in doubtful if side_of(name) in hands}
+
+
+def side_of(name: str) -> str:
+    """The side that a name mentions: ``right``, ``left`` or ``none``."""
+    for side, pattern in _SIDES.items():
+        if pattern.search(name) or side in name.lower():
+            return side
+    return "none"
+
+
+def end_effectors(recording: Recording) -> dict[str, str]:
+    """The bodies of a file that are likely end-effectors, and of which kind.
+
+    In a skeleton these are the first joint of each hand, foot or head, not the fingers below it.
+    """
+    kinds = {name: limb_of(name) for name in recording.bodies}
+    return {
+        name: kind
+        for name, kind in kinds.items()
+        if kind and not any(kinds.get(each) == kind for each in _ancestors(recording, name))
+    }
+
+
+def _ancestors(recording: Recording, name: str) -> list[str]:
+    out: list[str] = []
+    while name in recording.parents and recording.parents[name] not in out:
+        name = recording.parents[name]
+        out.append(name)
+    return out
+
+
+@dataclass(frozen=True)
+class Standing:
+    """How a person stands in a recording, by the names of head and feet."""
+
+    up: str
+    """The axis from the feet to the head: ``z``, ``-y`` ..."""
+
+    height: float
+    """Median distance from the feet to the head along it, in the file's unit."""
+
+    clear: bool
+    """Whether the body is much longer along this axis than along the others."""
+
+    evidence: str
+    """What shows the height, in the file's unit."""
+
+    whole: bool = False
+    """Whether the height is the person's stature, not that of the head above the feet."""
+
+    @property
+    def what(self) -> str:
+        """What has this height."""
+        return "the person" if self.whole else "the head above the feet"
+
+    @property
+    def range_m(self) -> tuple[float, float]:
+        """What this height is of people of 1.0 to 2.2 m [m]."""
+        return STATURE_M if self.whole else HEIGHT_M
+
+    def is_persons(self, unit_m: float) -> bool:
+        """Whether somebody has this height in a unit [m]."""
+        low, high = self.range_m
+        return low <= self.height * unit_m <= high
+
+    @property
+    def unit(self) -> str:
+        """The unit in which somebody has this height; empty if none makes it so."""
+        return next((name for name in UNITS if self.is_persons(UNITS[name])), "")
+
+    @property
+    def scale_m(self) -> float:
+        """Metres per unit with which the person has the usual height."""
+        return (USUAL_STATURE_M if self.whole else USUAL_M) / self.height
+
+
+def standing(recording: Recording) -> Standing | None:
+    """How a person stands, if the file has a head and a foot by name."""
+    points = {name: each.positions for name, each in recording.bodies.items()}
+    points |= recording.markers
+    ends: dict[str, list[Float[np.ndarray, "3"]]] = {"head": [], "foot": [], "hand": [], "": []}
+    for name, places in points.items():
+        if not np.isnan(places).all():
+            ends[limb_of(name)].append(np.nanmedian(places, axis=0))
+    if not ends["head"] or not ends["foot"]:
+        return None
+    way = np.mean(ends["head"], axis=0) - np.mean(ends["foot"], axis=0)
+    axis = int(np.argmax(np.abs(way)))
+    lengths = np.sort(np.abs(way))
+    if not lengths[2] > 0.0:
+        return None
+    sign = "-" if way[axis] < 0.0 else ""
+    clear = bool(lengths[2] > CLEAR * lengths[1])
+    evidence = f"the head is {lengths[2]:.4g} above the feet"
+    return Standing(f"{sign}{'xyz'[axis]}", float(lengths[2]), clear, evidence)
+
+
+Spelled = Mapping[str, list[tuple[str, str]]]
+
+LEAST_NAMES = 4
+"""A convention of which fewer names are there is not taken to be followed."""
+
+LEAST_PARTS = 4
+"""Names that tell a part, such as ``middle`` or ``back``, and no side, are of a body only beside
+so many other parts of it."""
+
+FOLLOWED_SHARE = 0.2
+"""... nor one that knows a smaller share of the names than this [1]: short names are common."""
+
+SIDES = ("right", "left")
+
+BY_WORDS = "its words"
+"""What a name is known by that no convention knows."""
+
+
+@dataclass(frozen=True, slots=True)
+class BodyName:
+    """What one name of a file tells."""
+
+    name: str
+    place: str
+    """A segment or landmark of the body: ``right_foot``, ``right_heel``, ``c7``."""
+
+    exact: bool
+    """Whether the name is of that very place; else it rides somewhere on the segment."""
+
+    by: str
+    """The convention's title, or ``BY_WORDS``."""
+
+    subject: str = ""
+    """Whose body it is, where names begin with a subject and a colon."""
+
+    @property
+    def side(self) -> str:
+        """``right``, ``left`` or ``none``."""
+        return next((each for each in SIDES if self.place.startswith(f"{each}_")), "none")
+
+    @property
+    def part(self) -> str:
+        """The part of the body: ``hand``, ``foot``, ``head``, ``pelvis``, ``shank`` ..."""
+        return parts()[without_side(self.place)]
+
+    @property
+    def height(self) -> float | None:
+        """How high it usually is on somebody who stands [share of stature]; None for arms."""
+        table = _table("places")
+        usual: float | None = table["middles"].get(self.part)
+        if self.exact and usual is not None:
+            usual = table["heights"].get(without_side(self.place), usual)
+        return usual
+
+
+def without_side(place: str) -> str:
+    """A place's name without its side."""
+    return place.removeprefix("right_").removeprefix("left_")
+
+
+@cache
+def _table(name: str) -> Mapping[str, Any]:
+    folder = files("extractors.readers") / "data"
+    return tomllib.loads((folder / f"{name}.toml").read_text("utf-8"))
+
+
+@cache
+def parts() -> Mapping[str, str]:
+    """The part of the body of each place without its side."""
+    rows: Mapping[str, list[str]] = _table("places")["parts"]
+    return {place: part for part, places in rows.items() for place in places}
+
+
+def body_names(names: Iterable[str]) -> dict[str, BodyName]:
+    """What each name means that is of a body; others are left out.
+
+    The convention that knows most names has its say first, then the next, as long as they know
+    ``LEAST_NAMES``; what none knows is known by its words, if they tell a part of the body.
+    """
+    left = spellings(names)
+    least = max(LEAST_NAMES, FOLLOWED_SHARE * len(left))
+    out: dict[str, BodyName] = {}
+    while found := max((_known(each, left) for each in conventions().values()), key=len):
+        if len(found) < least:
+            break
+        out |= found
+        left = {name: each for name, each in left.items() if name not in found}
+        least = LEAST_NAMES
+    worded = dict(_by_words(left))
+    seen = {each.part for each in [*out.values(), *worded.values()]}
+    if len(seen) < LEAST_PARTS:
+        worded = {name: each for name, each in worded.items() if not _doubtful(each)}
+    return out | worded
+
+
+def _doubtful(found: BodyName) -> bool:
+    return found.side == "none" and found.part not in {"head", "pelvis"}
+
+
+def _known(convention: Convention, spelled: Spelled) -> dict[str, BodyName]:
+    out = {}
+    for name, (subject, known) in matched(spelled, convention.keys).items():
+        exact = known in convention.points
+        place = convention.points[known] if exact else convention.on[known]
+        out[name] = BodyName(name, place, exact, convention.title, subject)
+    return out
+
+
+def _by_words(names: Iterable[str]) -> Iterator[tuple[str, BodyName]]:
+    for name in names:
+        subject, bare = split_name(name)
+        place = _place(bare)
+        if place:
+            exact = not any(each.isdigit() for each in bare)
+            yield name, BodyName(name, place, exact, BY_WORDS, subject)
+
+
+def _place(bare: str) -> str:
+    """The place that a name's words tell of; an empty string if none does."""
+    bare = re.sub(r"\d+$", "", bare)
+    bare = re.sub(r"^([LRlr])(?=[A-Z][A-Za-z])", r"\1_", bare)
+    words = words_of(bare)
+    pairs = {a + b for a, b in pairwise(words)}
+    side = next((each for each in SIDES if each[0] in words), side_of(bare))
+    for word, place in _table("words")["words"].items():
+        if word in words or word in pairs:
+            sided = "{side}" in place
+            return str(place.format(side=side)) if sided and side != "none" else _unsided(place)
+    return ""
+
+
+def _unsided(place: str) -> str:
+    return place.removeprefix("{side}_")
+
+
+def computed(names: Iterable[str]) -> list[str]:
+    """Names of computed quantities among the points of a file, such as angles and moments."""
+    patterns = [pattern for each in conventions().values() for pattern in each.computed]
+    return [
+        name
+        for name in names
+        if any(fnmatchcase(split_name(name)[1], pattern) for pattern in patterns)
+    ]
+
+
+def constant_name(text: str) -> str:
+    """Lower-case words joined by underscores: ``HandRight`` is ``hand_right``."""
+    words = re.sub(r"[^A-Za-z0-9]+", "_", text).strip("_")
+    snake = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", words).lower()
+    return snake if snake[:1].isalpha() else f"body_{snake}".rstrip("_")
