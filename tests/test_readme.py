@@ -1,4 +1,4 @@
-"""The commands of the README run, in their order, in one folder."""
+"""Commands of the README and of docs/ run, in order, one folder a page; links lead somewhere."""
 
 import re
 import shlex
@@ -10,51 +10,76 @@ import pytest
 from commands import capar, clean_environment
 
 ROOT = Path(__file__).parents[1]
-README = (ROOT / "README.md").read_text()
-COMMANDS = [
-    line.removeprefix("$ ")
-    for block in re.findall(r"```console\n(.*?)```", README, re.S)
-    for line in block.splitlines()
-    if line.startswith("$ ")
-]
+README = ROOT / "README.md"
+PAGES = [README, *sorted((ROOT / "docs").glob("*.md"))]
+PROSE = [*PAGES, ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("*/README.md"))]
+WITH_COMMANDS = [page for page in PAGES if "```console" in page.read_text()]
 CAPAR = str(Path(sys.executable).parent / "capar")
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the parts of a checkout that the README names."""
-    place = tmp_path_factory.mktemp("readme")
-    (place / "capar").mkdir()
-    (place / "capar" / "demo").symlink_to(ROOT / "capar" / "demo")
-    (place / "examples").symlink_to(ROOT / "examples")
-    (place / "mine").mkdir()
-    return place
+def commands(page: Path) -> list[str]:
+    """The commands of a page's console blocks."""
+    blocks = re.findall(r"```console\n(.*?)```", page.read_text(), re.S)
+    lines = [line for block in blocks for line in block.splitlines()]
+    return [line.removeprefix("$ ") for line in lines if line.startswith("$ ")]
 
 
-def test_the_readme_shows_commands() -> None:
-    assert len(COMMANDS) > 10
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with the parts of a checkout that the pages name."""
+    (tmp_path / "capar").mkdir()
+    (tmp_path / "capar" / "demo").symlink_to(ROOT / "capar" / "demo")
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    (tmp_path / "mine").mkdir()
+    return tmp_path
 
 
 @pytest.mark.long
-def test_every_command_of_the_readme_runs(folder: Path) -> None:
-    """All in processes of their own; the first one by the installed script."""
-    for number, command in enumerate(COMMANDS):
+@pytest.mark.parametrize("page", WITH_COMMANDS, ids=lambda page: page.stem)
+def test_every_command_of_a_page_runs(page: Path, folder: Path) -> None:
+    for command in commands(page):
         name, *arguments = shlex.split(command)
         assert name == "capar"
-        done = by_script(arguments, folder) if number == 0 else capar(*arguments, cwd=folder)
+        done = capar(*arguments, cwd=folder)
         assert done.returncode == 0, f"{command}\n{done.stderr}"
-    assert (folder / "drink.png").stat().st_size > 10_000
-    assert (folder / "mine" / "capture.toml").exists()
-    assert (folder / "known.trig").exists()
 
 
-def by_script(arguments: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [CAPAR, *arguments], cwd=folder, env=clean_environment(), capture_output=True, text=True,
+@pytest.mark.long
+def test_python_of_the_pages_runs(folder: Path) -> None:
+    for page in PAGES:
+        for code in re.findall(r"```python\n(.*?)```", page.read_text(), re.S):
+            command = [sys.executable, "-c", code]
+            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+            assert done.returncode == 0, f"{page.name}\n{code}\n{done.stderr}"
+
+
+def test_the_installed_script_observes_the_demo(folder: Path) -> None:
+    arguments = shlex.split(commands(README)[0])[1:]
+    done = subprocess.run(
+        [CAPAR, *arguments],
+        cwd=folder,
+        env=clean_environment(),
+        capture_output=True,
+        text=True,
         check=False,
-    )  # fmt: skip
+    )
+    assert done.returncode == 0, done.stderr
+    assert (folder / "drink.png").stat().st_size > 10_000
 
 
-def test_what_the_readme_links_to_is_there() -> None:
-    for path in re.findall(r"\]\(([^)#:]+)\)", README):
-        assert (ROOT / path).exists(), path
+@pytest.mark.parametrize("page", PROSE, ids=lambda page: str(page.relative_to(ROOT)))
+def test_what_a_page_links_to_is_there(page: Path) -> None:
+    for path in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
+        assert (page.parent / path).exists(), path
+
+
+def test_every_benchmark_that_a_page_names_is_there() -> None:
+    for page in PROSE:
+        for path in re.findall(r"\b(?:benchmarks|tests)/[\w/]+\.py", page.read_text()):
+            assert (ROOT / path).exists(), f"{page.name}: {path}"
+
+
+def test_the_readme_stays_short() -> None:
+    text = README.read_text()
+    assert len(text.splitlines()) <= 200
+    assert len(text) <= 14_000

@@ -2,7 +2,7 @@
 
 The line of sight is that of the eyes where an eye tracker knows them, else that of the face: it is
 ``gaze`` of the head's sensor. In looks at what lies on a table the eyes turn up to 19 degrees from
-the face, whose line then passes above small things (figures in ``capar/body/README.md``).
+the face, whose line then passes above small things (figures in ``docs/body.md``).
 """
 
 from dataclasses import dataclass
