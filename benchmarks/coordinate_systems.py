@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from capar.body.scripted_actions import performed
-from capar.regeneration.replayed_reaches import Replay, replays
+from capar.regeneration.styles import Replay, replays
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt

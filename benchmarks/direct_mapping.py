@@ -11,7 +11,7 @@ from capar.body.human import Human
 from capar.body.scripted_actions import ACTIONS, action_capture
 from capar.pipelines.round_trips import SAME, body, observed_source
 from capar.regeneration import Motion, PlanError, Quality, Source, map_directly, regenerate
-from capar.regeneration.departures import departures
+from capar.regeneration.direct_mapping import departures
 
 AGENTS = ("woman", "child")
 RATE_HZ = 30.0

@@ -14,9 +14,8 @@ from capar.body.scripted_actions import ACTIONS, action_capture
 from capar.pipelines.observation import observe
 from capar.pipelines.round_trips import body, observed_source
 from capar.regeneration import Source, capture_of
-from capar.regeneration.errors import PlanError
-from capar.regeneration.manner import Effort, regenerate_with_effort
-from capar.regeneration.manner.efforts import POLES
+from capar.regeneration.efforts import POLES, Effort, regenerate_with_effort
+from capar.regeneration.scenes import PlanError
 
 AGENTS = ("man", "woman", "child")
 

@@ -13,8 +13,8 @@ from virtual_bodies.striking import let_go, struck
 
 from capar.pipelines.observation import observe
 from capar.pipelines.round_trips import body, observed_source, round_trips
-from capar.regeneration.forces.force_kinds import ForceKind
-from capar.regeneration.regenerating import regenerate
+from capar.regeneration.forces import ForceKind
+from capar.regeneration.search import regenerate
 from capar.regeneration.styles import own_style
 
 NOISE_M = 0.0015

@@ -18,10 +18,9 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import ROOT_SIZE, Human
 from capar.body.scripts import SIDES
-from capar.regeneration.drafts import CUT_M, REACH_M, REACH_RAD, Draft, check_stance
-from capar.regeneration.errors import PlanError
 from capar.regeneration.grips import Grip, Turn, is_round
-from capar.regeneration.scenes import Scene
+from capar.regeneration.planning import CUT_M, REACH_M, REACH_RAD, Draft, check_stance
+from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import own_style

@@ -27,9 +27,8 @@ from capar.pipelines.round_trips import (
     observed_source,
     round_trip,
 )
-from capar.regeneration.motions import Motion
-from capar.regeneration.scene_files import DRAWS
-from capar.regeneration.scenes import Scene
+from capar.regeneration.motion import Motion
+from capar.regeneration.scenes import DRAWS, Scene
 from capar.regeneration.sources import Source
 
 AGENTS = ("man", "woman", "child")

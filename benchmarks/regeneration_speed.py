@@ -9,8 +9,8 @@ from itertools import pairwise
 
 from capar.body.scripted_actions import action_capture
 from capar.pipelines.round_trips import body, numbered_scene, observed_source
-from capar.regeneration.hand_paths import Care
-from capar.regeneration.motions import perform_plan
+from capar.regeneration.motion import perform_plan
+from capar.regeneration.paths import Care
 from capar.regeneration.planning import led, reachable
 from capar.regeneration.quality import quality
 

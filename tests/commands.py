@@ -24,7 +24,7 @@ LOADED = (
     "capar.cli.regenerate",
     "capar.pipelines.explanation",
     "capar.pipelines.observation",
-    "capar.regeneration.regenerating",
+    "capar.regeneration.search",
     "capar.views.picture",
     "capar_rules.explain.why_not",
     "extractors.readers.bundle.capture_toml",

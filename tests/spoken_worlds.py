@@ -17,11 +17,16 @@ from capar.model.capture import Capture, TagType
 from capar.pipelines.language import vocabulary
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.pipelines.recordings import Recording
-from capar.pipelines.spoken_requests import Choice, choices, observed_actions
+from capar.pipelines.spoken_requests import (
+    Choice,
+    Request,
+    choices,
+    observed_actions,
+    read_requests,
+)
 from capar.pipelines.trials import trial_of
 from capar.regeneration import scenes
-from capar.regeneration.casting import captured_scene
-from capar.regeneration.requests import Request, read_requests
+from capar.regeneration.roles import captured_scene
 from kb.language.vocabulary import Vocabulary
 
 HERE = Path(__file__).parent

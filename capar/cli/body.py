@@ -236,9 +236,8 @@ def map_command(
     from capar.cli.regenerate import quality_answer, tell_quality
     from capar.pipelines.round_trips import SAME, body, observed_source
     from capar.regeneration import map_directly
-    from capar.regeneration.captures import capture_of, write_motion
-    from capar.regeneration.completing import read_completion
-    from capar.regeneration.departures import departures
+    from capar.regeneration.captures import capture_of, read_completion, write_motion
+    from capar.regeneration.direct_mapping import departures
 
     if output:
         check_new_folder(output)

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     import numpy as np
 
     from capar.body.human import Human
+    from capar.pipelines.preparation import Approach
     from capar.pipelines.recordings import Recording
     from capar.pipelines.spoken_requests import Choice, Performance
-    from capar.pipelines.stances import Approach
-    from capar.regeneration.manner import EffortReport
-    from capar.regeneration.motions import Motion
+    from capar.regeneration.efforts import EffortReport
+    from capar.regeneration.motion import Motion
     from capar.regeneration.quality import Gate, Quality
     from capar.regeneration.scenes import Scene
     from capar.regeneration.sources import Source
@@ -27,18 +27,16 @@ if TYPE_CHECKING:
     Act = Callable[[Scene], tuple[Motion, Quality, EffortReport | None]]
     from capar.model.capture import Capture
     from capar.pipelines.instantiation import Asked, Instance
-    from capar.pipelines.joint_round_trips import JointTrip
-    from capar.pipelines.preparations import Performed, Prepared
-    from capar.pipelines.preparing import World
-    from capar.pipelines.round_trips import Trip
-    from capar.regeneration.bindings import Role
-    from capar.regeneration.forces.force_kinds import ForceKind
-    from capar.regeneration.joint_regenerating import JointMotion
-    from capar.regeneration.manner import Effort, EffortReport
-    from capar.regeneration.motions import Motion
+    from capar.pipelines.preparation import Performed, Prepared, World
+    from capar.pipelines.round_trips import JointTrip, Trip
+    from capar.regeneration.efforts import Effort, EffortReport
+    from capar.regeneration.forces import ForceKind
+    from capar.regeneration.hand_overs import JointMotion
+    from capar.regeneration.motion import Motion
     from capar.regeneration.quality import Quality
+    from capar.regeneration.roles import Role
     from capar.regeneration.scenes import Scene
-    from capar.regeneration.style_kinds import Kind
+    from capar.regeneration.styles import Kind
     from kb import Actionary
 
 
@@ -161,10 +159,9 @@ def _asked(
     from capar.cli.options import rule_words
     from capar.model.errors import CaparError
     from capar.pipelines.language import vocabulary
-    from capar.pipelines.spoken_requests import choices, observed_actions
+    from capar.pipelines.spoken_requests import choices, observed_actions, read_requests
     from capar.pipelines.trials import trial_of
-    from capar.regeneration.casting import captured_scene
-    from capar.regeneration.requests import read_requests
+    from capar.regeneration.roles import captured_scene
 
     stage = str(scene) if scene else where.capture
     if stage is None:
@@ -234,7 +231,7 @@ def performed_near(
     Raises:
         PlanError: It is out of reach, and no step helps.
     """
-    from capar.pipelines.stances import approached
+    from capar.pipelines.preparation import approached
 
     if not step:
         return None, act(scene)
@@ -255,7 +252,7 @@ def write_approach(stepped: "Approach", folder: Path, agent: str) -> None:
         folder: The new folder.
         agent: Name of the performer.
     """
-    from capar.regeneration.stepping_captures import capture_of_steps, write_steps
+    from capar.regeneration.captures import capture_of_steps, write_steps
 
     capture = capture_of_steps(stepped.steps, name="steps", agent=agent)
     write_steps(stepped.steps, capture, folder)
@@ -337,9 +334,8 @@ def perform_instance(
     """
     from capar.cli.output import print_json
     from capar.pipelines.instantiation import Knowledge, instantiate
-    from capar.pipelines.preparations import prepare
-    from capar.pipelines.ways import opened as open_recording
-    from capar.pipelines.ways import ways_of
+    from capar.pipelines.preparation import opened as open_recording
+    from capar.pipelines.preparation import prepare, ways_of
 
     parts = dict(_part(text) for text in stated)
     with _words(where, needed=is_action(what)) as words:
@@ -416,10 +412,10 @@ def _recorded(
     what: str, known: "Sequence[Recording]", parts: Sequence[str], assume: Path | None
 ) -> "tuple[Recording, Source, tuple[str, ...]]":
     """The recording that is performed, and what is to be told of its choice."""
-    from capar.pipelines.known_actions import find_action
+    from capar.pipelines.instantiation import find_action
     from capar.pipelines.recordings import observed_recording
     from capar.pipelines.round_trips import observed_source
-    from capar.regeneration.completing import read_completion
+    from capar.regeneration.captures import read_completion
 
     completion = read_completion(assume) if assume else None
     if not is_action(what):
@@ -447,10 +443,9 @@ def _asked_instantiation(
 ) -> "tuple[Asked, World]":
     """What is asked for, and the world in which it is, as measured."""
     from capar.pipelines.instantiation import Asked
-    from capar.pipelines.preparations import captured_world, measured_world
+    from capar.pipelines.preparation import FARTHEST_M, captured_world, measured_world
     from capar.pipelines.round_trips import SAME, body
-    from capar.pipelines.stances import FARTHEST_M
-    from capar.regeneration.scene_files import read_scene
+    from capar.regeneration.scenes import read_scene
 
     who = source.capture.agent.name if agent == SAME else agent
     kinds = words.agent_profile(who)["kind"] if who in words.agents() else ()
@@ -487,12 +482,10 @@ def _performed(
 
     That contacts are as its PARs assert is a gate.
     """
-    from capar.pipelines.preparations import Performed
+    from capar.pipelines.preparation import Performed, asserted
     from capar.pipelines.round_trips import by_hand, observed_source
-    from capar.pipelines.ways import asserted
-    from capar.regeneration.contact_tables import contact_gate
-    from capar.regeneration.manner import regenerate_in_manner
-    from capar.regeneration.quality import Quality
+    from capar.regeneration.efforts import regenerate_in_manner
+    from capar.regeneration.quality import Quality, contact_gate
     from capar.regeneration.styles import borrowed_style, own_style
 
     source, where, names = instance.placed(scene)
@@ -559,7 +552,7 @@ def _answer_instantiation(
 def _tell_instantiation(
     prepared: "Prepared", main: "Performed", stepped: "Approach | None"
 ) -> None:
-    from capar.pipelines.preparing import told
+    from capar.pipelines.preparation import told
 
     if not prepared.done and stepped is None:
         typer.echo("plan: nothing has to be prepared")
@@ -681,11 +674,11 @@ def perform_jointly(
         json: Whether JSON is printed.
     """
     from capar.cli.output import print_json
-    from capar.pipelines.joint_round_trips import bodies, observed_joint_source
-    from capar.regeneration.joint_captures import joint_capture_of, write_joint_motion
-    from capar.regeneration.joint_regenerating import regenerate_together
-    from capar.regeneration.scene_files import read_scenes
-    from capar.regeneration.style_kinds import style_kind
+    from capar.pipelines.round_trips import bodies, observed_joint_source
+    from capar.regeneration.captures import joint_capture_of, write_joint_motion
+    from capar.regeneration.hand_overs import regenerate_together
+    from capar.regeneration.scenes import read_scenes
+    from capar.regeneration.styles import style_kind
 
     kind, source = style_kind(style), observed_joint_source(capture)
     scenes = {name: one.scene for name, one in source.sources.items()}
@@ -740,7 +733,7 @@ def tell_joint_trips(
         seed: Of the scenes.
         json: Whether JSON is printed.
     """
-    from capar.pipelines.joint_round_trips import (
+    from capar.pipelines.round_trips import (
         bodies,
         joint_round_trips,
         observed_joint_source,
@@ -880,9 +873,9 @@ def regenerate(
     from capar.cli.output import check_new_folder
     from capar.model.errors import CaparError
     from capar.pipelines.trials import trial_of
-    from capar.regeneration.forces.force_kinds import force_kind
-    from capar.regeneration.manner import read_effort
-    from capar.regeneration.style_kinds import style_kind
+    from capar.regeneration.efforts import read_effort
+    from capar.regeneration.forces import force_kind
+    from capar.regeneration.styles import style_kind
 
     if output:
         check_new_folder(output)
@@ -943,10 +936,9 @@ def _perform_alone(
     """Perform what one performer was recorded to do."""
     from capar.cli.output import print_json
     from capar.pipelines.round_trips import body, by_hand, observed_source
-    from capar.regeneration.captures import capture_of, write_motion
-    from capar.regeneration.completing import read_completion
-    from capar.regeneration.manner import regenerate_in_manner
-    from capar.regeneration.scene_files import read_scene
+    from capar.regeneration.captures import capture_of, read_completion, write_motion
+    from capar.regeneration.efforts import regenerate_in_manner
+    from capar.regeneration.scenes import read_scene
     from capar.regeneration.styles import borrowed_style, own_style
 
     recorded = observed_source(trial, read_completion(assume) if assume else None)
@@ -1010,7 +1002,7 @@ def roundtrip(
     """Observe CAPTURE, perform it on other bodies, observe that, and compare."""
     from capar.pipelines.round_trips import body, observed_source, round_trips
     from capar.pipelines.trials import trial_of
-    from capar.regeneration.completing import read_completion
+    from capar.regeneration.captures import read_completion
 
     trial = trial_of(capture)
     if trial.others:

@@ -1,28 +1,104 @@
-"""From a recorded action to one on the things of a scene by a body: UPAR to IPAR (thesis 4.1.2)."""
+"""A recorded action bound to the objects of a scene and a body: UPAR to IPAR (thesis 4.1.2)."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from capar.body.human import Human
 from capar.body.scenes import Thing
-from capar.pipelines.applicability import Abilities, Applied, check_applicable
+from capar.model.errors import UnknownNameError
+from capar.model.par import ComplexPar, Step
 from capar.pipelines.recordings import Recording
-from capar.regeneration.bindings import (
+from capar.regeneration.roles import (
     Ask,
     Binding,
     Kinds,
     Role,
     bind,
+    cast,
+    check_movable,
     ends_on,
     kind_of,
+    own_names,
     roles_of,
+    with_only,
 )
-from capar.regeneration.casting import cast, check_movable, own_names, with_only
-from capar.regeneration.errors import PlanError
-from capar.regeneration.scenes import Scene
+from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.sources import Source
+from kb.findings import Ability
+
+Abilities = Callable[[str], tuple[Ability, ...]]
+"""What is declared or observed of an agent or a kind, those of more general kinds included."""
+
+
+@dataclass(frozen=True)
+class Applied:
+    """An action that is to be performed: by whom, on what, in which steps."""
+
+    action: str
+    par: ComplexPar
+    steps: tuple[Step, ...]
+    general: Mapping[str, frozenset[str]]
+    """The more general actions above each step's."""
+
+    agent: tuple[str, ...]
+    """Who performs: the name, and the kind if that is another."""
+
+    kinds: Mapping[str, str]
+    """What takes the part of each recorded thing, by its kind."""
+
+
+def check_applicable(applied: Applied, abilities: Abilities) -> tuple[str, ...]:
+    """Check that what is declared does not rule the action out (thesis 4.6.1.4).
+
+    What an agent or a kind was declared able to do is all that it is able to do, beside what it
+    was observed to do. Of whom nothing is declared, nothing is ruled out, which is returned as a
+    note. An ability to do a more general action, or the whole one, holds for its steps.
+
+    Raises:
+        PlanError: Somebody or something is not able to; the message says what would declare it.
+    """
+    notes = []
+    doing = [step.action for step in applied.steps]
+    able = _declared(applied.agent, abilities)
+    if able is None:
+        notes.append(f"of {applied.agent[0]!r} no ability is declared, so none is ruled out")
+    else:
+        _check(applied, applied.agent[0], "agent", doing, able)
+    for part, kind in applied.kinds.items():
+        undergone = [step.action for step in applied.steps if part in step.objects]
+        able = _declared((kind,), abilities)
+        if undergone and able is not None:
+            _check(applied, kind, "object", undergone, able)
+    return tuple(notes)
+
+
+def _declared(whose: tuple[str, ...], abilities: Abilities) -> frozenset[str] | None:
+    """What they can do, if anything of it was declared."""
+    known = [one for name in whose for one in abilities(name)]
+    if not any(one.evidence == "declared" for one in known):
+        return None
+    return frozenset(one.action for one in known)
+
+
+def _check(
+    applied: Applied, who: str, command: str, actions: Iterable[str], able: frozenset[str]
+) -> None:
+    if able.intersection({applied.action, applied.par.name}):
+        return
+    lacking = [
+        action
+        for action in dict.fromkeys(actions)
+        if not able.intersection({action, *applied.general.get(action, ())})
+    ]
+    if lacking:
+        raise PlanError(
+            f"capable({who}, {lacking[0]}) does not hold: {who!r} is declared able to do "
+            f"{', '.join(sorted(able))}, and {applied.action!r} takes {', '.join(lacking)}; "
+            f"`capar {command} can {who} {' '.join(lacking)}` would declare it"
+        )
+
 
 BEYOND = 0.9
 """No palm is further from where a body stands, as a share of its stature: arm and trunk [1]."""
@@ -155,3 +231,47 @@ def _check_near(thing: Thing, scene: Scene, asked: Asked) -> None:
 
 def _told(binding: Binding) -> str:
     return f"{binding.thing!r} has the part of {binding.role!r}, {binding.reason}"
+
+
+@dataclass(frozen=True)
+class KnownAction:
+    """An action, the recording that holds it, and the others that do."""
+
+    name: str
+    recording: Recording
+    others: tuple[str, ...]
+    whole: bool
+    """Whether it is the recording as a whole, and no step of it."""
+
+
+def find_action(
+    name: str, recordings: Sequence[Recording], roles: Iterable[str] = ()
+) -> KnownAction:
+    """The recording that holds an action: as a whole, else as a step or a more special one.
+
+    Of several, those with things of the stated names count first, then the one with the fewest
+    steps of all hands, then the first by name.
+
+    Args:
+        name: Of the action, a recorded one or a primitive.
+        recordings: What can be performed.
+        roles: Names of recorded things that it has to have.
+
+    Raises:
+        UnknownNameError: No recording holds it.
+    """
+    wanted = set(roles)
+    whole = [one for one in recordings if name.lower() in {one.name.lower(), one.par.name.lower()}]
+    found = whole or [one for one in recordings if any(one.fits(s, name) for s in one.steps)]
+    if not found:
+        raise UnknownNameError("recorded action", name, _names(recordings))
+    found.sort(key=lambda one: (len(wanted - set(one.par.objects)), len(one.steps), one.name))
+    others = tuple(one.name for one in found[1:])
+    return KnownAction(name, found[0], others, bool(whole))
+
+
+def _names(recordings: Sequence[Recording]) -> set[str]:
+    """Every action that can be performed: recordings, their steps, and what these are cases of."""
+    steps = {step.action for one in recordings for step in one.steps}
+    general = {name for one in recordings for step in steps for name in one.general.get(step, ())}
+    return steps | general | {one.par.name for one in recordings}

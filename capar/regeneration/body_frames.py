@@ -9,10 +9,9 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
 from capar.body.scripts import SIDES
-from capar.regeneration.hand_frames import HandFrame, body_hand_frame, palm_of
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import Source, eyes_in_body
+from capar.regeneration.sources import HandFrame, Source, body_hand_frame, eyes_in_body, palm_of
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,9 +1,4 @@
-"""Direct mapping (thesis 3.2 to 3.6): a recording performed by another body without PARs.
-
-The baseline of every comparison. Hands and things go where they were recorded; what met the
-performer's head meets the new one's. Nothing is planned around obstacles, no grip is fitted to
-the new hand, and the scene is the recorded one.
-"""
+"""Direct mapping (thesis 3.2 to 3.6), the baseline: no PARs, no planning."""
 
 import itertools
 from collections.abc import Mapping
@@ -13,23 +8,16 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
-from capar.regeneration import attending
-from capar.regeneration.body_frames import (
-    BodyFrames,
-    body_frames,
-    head_path,
-    head_ratio,
-    rest_pose,
-)
-from capar.regeneration.drafts import SETTLE_S
+from capar.model.geometry import transforms
+from capar.regeneration import planning
+from capar.regeneration.body_frames import BodyFrames, body_frames, head_path, head_ratio, rest_pose
+from capar.regeneration.goals import Goal
 from capar.regeneration.grips import Grip, Turn
-from capar.regeneration.motions import Motion, perform_plan
-from capar.regeneration.path_mapping import SHORT_M, arc_shares
-from capar.regeneration.planning import Plan
-from capar.regeneration.quality import Quality, quality
+from capar.regeneration.motion import Motion, perform_plan
+from capar.regeneration.planning import SETTLE_S, Plan
+from capar.regeneration.quality import Measure, Quality, quality
 from capar.regeneration.sources import Hold, Meeting, Source
-from capar.regeneration.styles import own_style
-from capar.regeneration.thing_goals import Goal
+from capar.regeneration.styles import SHORT_M, arc_shares, own_style
 
 HEAD_SHARE = 0.1
 """How firmly the head is kept on its way where nothing meets it [1]."""
@@ -61,7 +49,7 @@ def mapped_plan(source: Source, human: Human) -> Plan:
     head = head_path(source, old, new)
     things = {name: _thing_path(source, old, new, head, name) for name in source.paths}
     hands = {side: _hand_path(source, old, new, things, side) for side in source.hands}
-    meeting = attending.around(source, source.meetings, SETTLE_S)
+    meeting = planning.around(source, source.meetings, SETTLE_S)
     return Plan(
         source=source,
         scene=scene,
@@ -76,7 +64,7 @@ def mapped_plan(source: Source, human: Human) -> Plan:
         things=things,
         head=head,
         firmness=np.maximum(meeting, HEAD_SHARE),
-        looks=attending.looks(source, things, head),
+        looks=planning.looks(source, things, head),
         notes=source.notes,
     )
 
@@ -182,3 +170,39 @@ def _grip(source: Source, hold: Hold) -> Grip:
     spot = np.median(poses.translation, axis=0)
     pose = RigidTransform.from_components(spot, poses.rotation.mean())
     return Grip(hold, pose, Turn(), 0.0)
+
+
+def departures(motion: Motion) -> tuple[Measure, ...]:
+    """The largest distance of each hand and each moved thing from its recorded place [mm].
+
+    The capture's own poses are compared, hands by the frame along the axes of their hulls. In
+    the recorded scene they say how exactly the recorded body does again what it did.
+    """
+    plan = motion.plan
+    capture, out = plan.source.capture, []
+    for side, hand in plan.source.hands.items():
+        name = f"{side}_palm"
+        spots, turns = plan.human.sites(motion.postures, [name])[name]
+        palms = RigidTransform.from_components(spots, Rotation.from_quat(turns, scalar_first=True))
+        performed = palms * plan.frames.palms[side].inv()
+        stream = capture.sensor(hand.sensor).stream
+        known = ~np.isnan(stream.positions[:, 0])
+        recorded = transforms(stream.positions[known], stream.orientations[known]) * hand.frame.pose
+        out.append(_largest(f"{side} hand", performed.translation, recorded.translation, known))
+    for name in plan.goals:
+        recorded_spots = capture.tag_object(name).stream.positions
+        known = ~np.isnan(recorded_spots[:, 0])
+        out.append(_largest(name, plan.things[name].translation, recorded_spots[known], known))
+    return tuple(out)
+
+
+def _largest(
+    name: str,
+    performed: Float[np.ndarray, "frames 3"],
+    recorded: Float[np.ndarray, "known 3"],
+    known: np.ndarray,
+) -> Measure:
+    apart = np.linalg.norm(performed[known] - recorded, axis=1)
+    worst = int(apart.argmax())
+    frame = int(np.flatnonzero(known)[worst])
+    return Measure("from the recorded way", 1e3 * float(apart[worst]), "mm", frame, name)

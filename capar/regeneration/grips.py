@@ -14,12 +14,11 @@ from capar.body.shapes import segment_surface
 from capar.model.capture import Sensor, Shape
 from capar.regeneration.body_frames import BodyFrames
 from capar.regeneration.collisions import Surroundings
-from capar.regeneration.companions import led_holds
-from capar.regeneration.contact_points import contact_points
+from capar.regeneration.goals import TOUCH_M, touching_shift
+from capar.regeneration.holds import led_holds
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import Hold, Source
-from capar.regeneration.thing_goals import TOUCH_M, touching_shift
+from capar.regeneration.sources import Hold, Source, contact_points
 
 YAWS = (0.0, 0.2, -0.2, 0.4, -0.4, 0.6, -0.6, 0.8, -0.8, 1.05, -1.05)
 """Turns about the axis of a round thing that are tried, outwards positive [rad]."""

@@ -1,22 +1,139 @@
-"""Where a thing passes from one performer to another, and the ways of things that all handle."""
+"""Hand-overs: several bodies perform together what several were recorded to do."""
 
+import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
+import mujoco
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.human import Human
-from capar.model.capture import TagType
+from capar.body.human import Human, body_spec
+from capar.model.capture import Capture, TagType
+from capar.model.facts import Touching
+from capar.model.observation import Observation
 from capar.regeneration.body_frames import body_frames
-from capar.regeneration.errors import PlanError
-from capar.regeneration.joint_sources import HandOver, JointSource, all_holds
-from capar.regeneration.scenes import Scene
-from capar.regeneration.sources import Source, moves
-from capar.regeneration.styles import Style
-from capar.regeneration.thing_goals import Goal, support_at, thing_goals
-from capar.regeneration.thing_paths import Ways, thing_paths
+from capar.regeneration.goals import Goal, support_at, thing_goals
+from capar.regeneration.holds import rides_of
+from capar.regeneration.motion import Motion
+from capar.regeneration.paths import Ways, thing_paths
+from capar.regeneration.planning import FEW_TURNS, MOST_TURNS, TALLER_M, Draft, beside, check_stance
+from capar.regeneration.quality import Gate, Quality, performed_hands
+from capar.regeneration.scenes import PlanError, Scene
+from capar.regeneration.search import best_motion
+from capar.regeneration.sources import Hold, Source, check_source, moves, source_of
+from capar.regeneration.styles import Kind, Style, own_style
+
+
+@dataclass(frozen=True, eq=False)
+class HandOver:
+    """A thing that passes from one performer's hand to another's."""
+
+    thing: str
+    giver: str
+    """Name of the agent."""
+
+    taker: str
+    first: int
+    """Frame from which both hold it."""
+
+    last: int
+    """Last frame in which both hold it."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointSource:
+    """What several performers did together."""
+
+    capture: Capture
+    observation: Observation
+    sources: Mapping[str, Source]
+    """By the agent's name, the first one first; the things are the same in all."""
+
+    hand_overs: tuple[HandOver, ...]
+    """In order of time."""
+
+
+def joint_source(capture: Capture, observation: Observation) -> JointSource:
+    """What a capture of several performers and its observation say of the performance.
+
+    Args:
+        capture: What was recorded.
+        observation: What was done in it.
+
+    Raises:
+        PlanError: As for one performer; or a thing passes between hands that never both hold it,
+            or two things do at once.
+    """
+    alone = {
+        agent.name: source_of(
+            _of(capture, agent.name), _done_by(capture, observation, agent.name), checked=False
+        )
+        for agent in capture.agents
+    }
+    sources = {}
+    touching = [fact for fact in observation.facts if isinstance(fact, Touching)]
+    for name, source in alone.items():
+        holds = tuple(hold for other in alone.values() for hold in other.holds)
+        others = [hold for other, s in alone.items() if other != name for hold in s.holds]
+        sources[name] = replace(
+            source,
+            others=tuple(sorted(others, key=lambda hold: hold.first)),
+            rides=rides_of(source.paths, holds, touching),
+        )
+        check_source(sources[name])
+    return JointSource(capture, observation, sources, _hand_overs(sources))
+
+
+def _of(capture: Capture, name: str) -> Capture:
+    """What was recorded of one performer, and all things."""
+    agent = next(agent for agent in capture.agents if agent.name == name)
+    sensors = [sensor for sensor in capture.sensors if capture.agent_of(sensor) == name]
+    if not sensors:
+        raise PlanError(f"{name!r} wears no sensor; leave the agent out, or name whose sensors are")
+    objects = [
+        thing
+        for thing in capture.objects
+        if thing.tag is not TagType.SELF or capture.agent_of(thing) == name
+    ]
+    return replace(
+        capture, agent=agent, others=(), sensors=tuple(sensors), objects=tuple(objects),
+        pivot_contacts=(),
+    )  # fmt: skip
+
+
+def _done_by(capture: Capture, observation: Observation, name: str) -> Observation:
+    """The observation with the forces of one performer alone."""
+    own = {sensor.name for sensor in capture.sensors if capture.agent_of(sensor) == name}
+    return replace(
+        observation, forces=tuple(force for force in observation.forces if force.ee in own)
+    )
+
+
+def _hand_overs(sources: Mapping[str, Source]) -> tuple[HandOver, ...]:
+    out = []
+    owned = [(hold, name) for name, source in sources.items() for hold in source.holds]
+    owned.sort(key=lambda pair: pair[0].first)
+    for number, (hold, giver) in enumerate(owned):
+        for later, taker in owned[number + 1 :]:
+            if giver == taker or hold.thing != later.thing:
+                continue
+            if later.first <= hold.last < later.last:
+                out.append(HandOver(hold.thing, giver, taker, later.first, hold.last))
+            elif later.last <= hold.last:
+                raise PlanError(
+                    f"{taker!r} holds {hold.thing!r} only while {giver!r} does; what two hold "
+                    "together and neither takes over is not regenerated"
+                )
+    return tuple(sorted(out, key=lambda found: found.first))
+
+
+def all_holds(source: JointSource) -> tuple[Hold, ...]:
+    """Of all performers, in order of time."""
+    holds = [hold for one in source.sources.values() for hold in one.holds]
+    return tuple(sorted(holds, key=lambda hold: (hold.first, hold.side)))
+
 
 SHIFTS = (
     (0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0.0, -0.1), (0.1, 0.1), (-0.1, 0.1),
@@ -209,3 +326,273 @@ def _through(
             else:
                 kept.append(goal)
     return sorted([*kept, *through], key=lambda goal: goal.frame)
+
+
+FAR_M = 0.1
+"""Larger distances between two bodies are not measured [m]."""
+
+
+class TwoBodies:
+    """Two bodies, to be posed and measured."""
+
+    def __init__(self, first: Human, second: Human) -> None:
+        spec = body_spec(first.measures)
+        spec.worldbody.add_frame().attach_body(
+            body_spec(second.measures).worldbody.first_body(), "other_", ""
+        )
+        self.model = spec.compile()
+        self.data = mujoco.MjData(self.model)
+        names = [
+            self.model.body(int(self.model.geom_bodyid[geom])).name
+            for geom in range(self.model.ngeom)
+        ]
+        own = [geom for geom, name in enumerate(names) if not name.startswith("other_")]
+        others = [geom for geom, name in enumerate(names) if name.startswith("other_")]
+        self.pairs = np.array(list(itertools.product(own, others)))
+        self.names = [name.removeprefix("other_") for name in names]
+        self.reach = self.model.geom_rbound[self.pairs].sum(axis=1)
+
+    def nearest(
+        self, first: Float[np.ndarray, "posture"], second: Float[np.ndarray, "posture"]
+    ) -> tuple[float, str, str]:
+        """How far two bodies are apart in some postures, negative inside [m], and which parts.
+
+        Args:
+            first: Posture of the first body.
+            second: Likewise.
+        """
+        self.data.qpos[:] = np.concatenate([first, second])
+        mujoco.mj_kinematics(self.model, self.data)
+        middles = self.data.geom_xpos[self.pairs]
+        apart = np.linalg.norm(middles[:, 0] - middles[:, 1], axis=1) - self.reach
+        worst = (FAR_M, "", "")
+        for row in np.flatnonzero(apart < FAR_M):
+            one, two = (int(geom) for geom in self.pairs[row])
+            found = mujoco.mj_geomDistance(self.model, self.data, one, two, FAR_M, None)
+            worst = min(worst, (float(found), self.names[one], self.names[two]))
+        return worst
+
+
+def joint_gates(source: JointSource, motions: Mapping[str, Motion]) -> tuple[Gate, ...]:
+    """Gates between all bodies, at every frame.
+
+    Args:
+        source: What was recorded.
+        motions: By the agent's name.
+    """
+    return (*_between(motions), *_coupled(source, motions))
+
+
+def _between(motions: Mapping[str, Motion]) -> Iterator[Gate]:
+    for (one, first), (two, second) in itertools.combinations(motions.items(), 2):
+        both = TwoBodies(first.plan.human, second.plan.human)
+        rows = zip(first.postures, second.postures, strict=True)
+        found = [(*both.nearest(*postures), frame) for frame, postures in enumerate(rows)]
+        gap_m, part, other, frame = min(found)
+        bodies = f"{one}'s {part}, {two}'s {other}" if part else ""
+        yield Gate("bodies apart", 1e3 * gap_m, -1.0, "mm", True, frame, bodies)
+
+
+def _coupled(source: JointSource, motions: Mapping[str, Motion]) -> Iterator[Gate]:
+    """Both hands are where they hold the thing as long as both were recorded to hold it."""
+    for passed in source.hand_overs:
+        worst = max(_missed(motions[name], passed, name) for name in (passed.giver, passed.taker))
+        missed_m, frame, bodies = worst
+        yield Gate("hand-over", 1e3 * missed_m, 1.0, "mm", False, frame, bodies)
+
+
+def _missed(motion: Motion, passed: HandOver, name: str) -> tuple[float, int, str]:
+    """How far a performer's hands are from their grips while a thing is handed over [m]."""
+    plan, part = motion.plan, slice(passed.first, passed.last + 1)
+    hands, worst = performed_hands(motion), (0.0, passed.first, name)
+    for grip in plan.grips:
+        hold = grip.hold
+        if hold.thing == passed.thing and hold.first <= passed.first <= passed.last <= hold.last:
+            wanted: RigidTransform = plan.things[hold.thing][part] * grip.pose
+            off = np.linalg.norm(hands[hold.side][part].translation - wanted.translation, axis=1)
+            row = int(off.argmax())
+            found = (float(off[row]), passed.first + row, f"{name}'s {hold.side} hand")
+            worst = max(worst, found)
+    return worst
+
+
+NEARER_M = (0.1, 0.2, 0.3, 0.5, 0.8, 1.2)
+"""How much nearer somebody is placed where something is out of reach [m]."""
+
+FAR_RATIO = 50.0
+"""What is missed by more with the recorded grip is not reached with a turned one, in units of what
+is allowed [1]."""
+
+MANY_TURNS = 24
+"""Turns of a grip that are tried at the usual place [1]."""
+
+MOST_PLACES = 3
+"""At so many places turned grips are tried [1]."""
+
+
+class OutOfReachError(PlanError):
+    """No grip of somebody reaches."""
+
+    def __init__(self, message: str, ratio: float) -> None:
+        super().__init__(message)
+        self.ratio = ratio
+
+
+@dataclass(frozen=True, eq=False)
+class JointMotion:
+    """The motions of several bodies that handle the same things."""
+
+    source: JointSource
+    motions: Mapping[str, Motion]
+    """By the agent's name."""
+
+    qualities: Mapping[str, Quality]
+    """Likewise."""
+
+    gates: tuple[Gate, ...]
+    """Between the bodies."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether every gate of every body is, and those between them."""
+        alone = all(quality.passed for quality in self.qualities.values())
+        return alone and all(gate.passed for gate in self.gates)
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """Gates that are not, with whose they are."""
+        own = [f"{who}: {name}" for who, one in self.qualities.items() for name in one.failed]
+        return (*own, *(gate.name for gate in self.gates if not gate.passed))
+
+
+def regenerate_together(
+    source: JointSource,
+    humans: Mapping[str, Human],
+    scenes: Mapping[str, Scene] | None = None,
+    kind: Kind = Kind.PATH,
+) -> JointMotion:
+    """Let bodies do together in a scene what was recorded of others; verified at every frame.
+
+    The things' ways are decided first and are the same for all; then every body is led along its
+    own hands' ways.
+
+    Args:
+        source: The recorded performance.
+        humans: Who performs, by the name of the recorded agent.
+        scenes: The same things for all, and where each one stands; as recorded, unless stated.
+        kind: What of the recorded ways is kept.
+
+    Raises:
+        PlanError: It is out of reach or impossible; the message says what would help.
+    """
+    cast = Cast(humans, scenes or {name: one.scene for name, one in source.sources.items()})
+    place, drafts = _reachable(source, cast, kind)
+    motions, qualities = {}, {}
+    for name, draft in drafts.items():
+
+        def again(watched: frozenset[int], name: str = name) -> Draft:
+            return _drafts(source, cast, kind, place, MOST_TURNS, [name], watched)[name]
+
+        motions[name], qualities[name] = best_motion(draft, again)
+    return JointMotion(source, motions, qualities, joint_gates(source, motions))
+
+
+def _reachable(source: JointSource, cast: Cast, kind: Kind) -> tuple[Place, dict[str, Draft]]:
+    """Where things are handed over, and everybody's grips; the first place that all reach.
+
+    Raises:
+        PlanError: There is none.
+    """
+    for name, human in cast.humans.items():
+        check_stance(cast.scenes[name], human)
+    tried = list(places()) if source.hand_overs else [Place()]
+    passing = frozenset(passed.first for passed in source.hand_overs)
+    near, why = [], ""
+    for place in tried:
+        try:
+            if passing:
+                _drafts(source, cast, kind, place, 1, only=passing)
+            return place, _drafts(source, cast, kind, place, 1)
+        except OutOfReachError as error:
+            near += [place] * (error.ratio < FAR_RATIO)
+            why = why or str(error)
+        except PlanError as error:
+            why = why or str(error)
+    for place, most in [(p, FEW_TURNS) for p in near[:MOST_PLACES]] + [
+        (p, MANY_TURNS) for p in near[:1]
+    ]:
+        try:
+            return place, _drafts(source, cast, kind, place, most)
+        except PlanError as error:
+            why = str(error)
+    raise PlanError(f"{why}; {_remedy(source, cast, kind, passing)}")
+
+
+def _drafts(
+    source: JointSource,
+    cast: Cast,
+    kind: Kind,
+    place: Place,
+    most: int,
+    names: list[str] | None = None,
+    watched: frozenset[int] = frozenset(),
+    only: frozenset[int] = frozenset(),
+) -> dict[str, Draft]:
+    """Everybody's grips; tried at some frames only, if these are stated.
+
+    Raises:
+        PlanError: Somebody has none that reaches.
+    """
+    first = next(iter(source.sources))
+    ways = joint_ways(source, cast, own_style(source.sources[first], kind), place)
+    out = {}
+    for name in names or list(source.sources):
+        one, scene = source.sources[name], cast.scenes[name]
+        style = own_style(one, kind)
+        draft = Draft(one, scene, cast.humans[name], style, watched, ways)
+        draft.only = only
+        grips, missed = draft.reachable_grips(most)
+        if missed is not None:
+            raise OutOfReachError(f"{name}: {missed}", draft.worst.ratio)
+        draft.grips = tuple(grips)
+        draft.told += [f"whatever the grip, {told}" for told in draft.pressed]
+        out[name] = draft
+    return out
+
+
+def _remedy(source: JointSource, cast: Cast, kind: Kind, passing: frozenset[int]) -> str:
+    """What would make it possible."""
+    for words, changed in _remedies(source, cast):
+        try:
+            for name, human in changed.humans.items():
+                check_stance(changed.scenes[name], human)
+            if passing:
+                _drafts(source, changed, kind, Place(), 1, only=passing)
+            _drafts(source, changed, kind, Place(), 1)
+        except PlanError:
+            continue
+        return f"{words} would do"
+    return "no nearer place or recorded body that was tried would do"
+
+
+def _remedies(source: JointSource, cast: Cast) -> Iterator[tuple[str, Cast]]:
+    """What may help, in words, and the cast with it."""
+    middle = np.mean([scene.place for scene in cast.scenes.values()], axis=0)
+    for by_m in NEARER_M:
+        for name in cast.scenes:
+            scenes = {**cast.scenes, name: beside(cast.scenes[name], by_m, 0.0)}
+            yield f"{name} standing {by_m:.2f} m further ahead", Cast(cast.humans, scenes)
+        scenes = {name: _towards(scene, middle, by_m) for name, scene in cast.scenes.items()}
+        yield f"everybody standing {by_m:.2f} m nearer", Cast(cast.humans, scenes)
+    for name, human in cast.humans.items():
+        recorded = source.sources[name].human
+        recorded_m, own_m = recorded.measures["stature"], human.measures["stature"]
+        if recorded_m > own_m + TALLER_M:
+            words = f"{name} being as tall as recorded, {recorded_m:.2f} m,"
+            yield words, Cast({**cast.humans, name: recorded}, cast.scenes)
+
+
+def _towards(scene: Scene, middle: np.ndarray, by_m: float) -> Scene:
+    way = middle - np.asarray(scene.place)
+    x, y = np.asarray(scene.place) + by_m * way / max(float(np.linalg.norm(way)), 1e-9)
+    return replace(scene, place=(float(x), float(y)))

@@ -1,42 +1,171 @@
-"""What regeneration takes from a capture and its observation: paths, holds, meetings and gaze."""
+"""The recorded performance: paths of hands, objects and eyes, and who held what."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import trimesh
 from jaxtyping import Float
+from scipy.spatial import KDTree
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import measures_of
 from capar.body.human import Human
+from capar.body.recording import HAND_SEGMENTS
 from capar.body.scenes import Thing
 from capar.body.sensors import CUTOFF_HZ, target
+from capar.body.shapes import segment_surface
 from capar.body.skeleton import eyes_between
 from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagType
 from capar.model.facts import Displaced, Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
-from capar.regeneration.bearing import Ride, rides_of
-from capar.regeneration.companions import Companion, companions_of
-from capar.regeneration.contact_points import surface_samples
-from capar.regeneration.errors import PlanError
-from capar.regeneration.hand_frames import HandAxes, HandFrame, hand_frame, stated_hand_frame
-from capar.regeneration.holding import (
+from capar.regeneration.holds import (
     GRASP_M,
     GRASP_RAD,
+    Companion,
+    Launch,
+    Ride,
+    Toss,
+    companions_of,
     holds_of,
+    launches_of,
     meetings_of,
+    poises_of,
+    rides_of,
     wandering,
     wanderings,
+    with_blows,
     with_touches,
     with_unseen_ends,
 )
-from capar.regeneration.holding import Hold as Hold
-from capar.regeneration.holding import Meeting as Meeting
-from capar.regeneration.launches import Launch, Toss, launches_of, with_blows
-from capar.regeneration.poises import Poise as Poise
-from capar.regeneration.poises import poises_of
-from capar.regeneration.scenes import Scene
+from capar.regeneration.holds import Hold as Hold
+from capar.regeneration.holds import Meeting as Meeting
+from capar.regeneration.holds import Poise as Poise
+from capar.regeneration.scenes import PlanError, Scene
+
+SAMPLES = 5000
+"""Points on each surface."""
+
+PATCH_M = 0.0015
+"""Points that are further apart than the nearest by no more than this are in the patch [m]."""
+
+
+def contact_points(
+    first: Shape, second: Shape, relative: RigidTransform
+) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    """The middle of the contact on each of two shapes, in each one's own frame [m].
+
+    Args:
+        first: The one.
+        second: The other.
+        relative: ``T_first_second``.
+    """
+    one, two = _points(first), _points(second)
+    gaps, nearest = KDTree(one).query(relative.apply(two))
+    patch = gaps < gaps.min() + PATCH_M
+    return one[nearest[patch]].mean(axis=0), two[patch].mean(axis=0)
+
+
+def surface_samples(
+    shape: Shape,
+) -> tuple[Float[np.ndarray, "points 3"], Float[np.ndarray, "points 3"]]:
+    """Points on a surface and its normals there, outwards, in the shape's frame [m, 1]."""
+    mesh = trimesh.Trimesh(np.array(shape.vertices), np.array(shape.faces), process=False)
+    points, faces = trimesh.sample.sample_surface(mesh, SAMPLES, seed=0)
+    outwards = 1.0 if mesh.volume >= 0.0 else -1.0
+    return np.array(points), outwards * np.array(mesh.face_normals[faces])
+
+
+def _points(shape: Shape) -> Float[np.ndarray, "points 3"]:
+    mesh = trimesh.Trimesh(np.array(shape.vertices), np.array(shape.faces), process=False)
+    points, _ = trimesh.sample.sample_surface(mesh, SAMPLES, seed=0)
+    return np.concatenate([np.array(shape.vertices), np.array(points)])
+
+
+LEAST_SINE = 0.5
+"""Of the angle between a palm's direction and its fingers' [1]."""
+
+
+@dataclass(frozen=True, eq=False)
+class HandFrame:
+    """Where the frame is on a body, and how large the hand is in it."""
+
+    pose: RigidTransform
+    """``T_body_frame``: of the sensor of a capture, or of the hand's segment of a body."""
+
+    extents: Float[np.ndarray, "3"]
+    """Lengths of the hand along the frame's axes [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class HandAxes:
+    """Which way a hand points and faces, as it is known of a recording's sensor."""
+
+    fingers: Float[np.ndarray, "3"]
+    """To where the straight fingers point, in the sensor's frame."""
+
+    palm: Float[np.ndarray, "3"]
+    """To where the palm faces, likewise."""
+
+
+def stated_hand_frame(shape: Shape, axes: HandAxes) -> HandFrame:
+    """The frame along axes that are known, whatever the shape of the half-bent hand is.
+
+    Args:
+        shape: The hand's surface.
+        axes: Its directions; the palm's is kept where they are not at right angles.
+
+    Raises:
+        PlanError: The two are along one line.
+    """
+    z = axes.palm / np.linalg.norm(axes.palm)
+    x = axes.fingers - (axes.fingers @ z) * z
+    if np.linalg.norm(x) < LEAST_SINE * np.linalg.norm(axes.fingers):
+        raise PlanError("a palm does not face along its own fingers")
+    x = x / np.linalg.norm(x)
+    hull = trimesh.convex.convex_hull(np.array(shape.vertices))
+    turn = Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=1))
+    pose = RigidTransform.from_components(np.array(hull.center_mass), turn)
+    return HandFrame(pose, np.ptp(pose.inv().apply(hull.vertices), axis=0))
+
+
+def hand_frame(
+    shape: Shape, fingers: Float[np.ndarray, "3"], palm: Float[np.ndarray, "3"]
+) -> HandFrame:
+    """The frame along the principal axes of a hand's hull.
+
+    Args:
+        shape: The hand's surface.
+        fingers: Roughly to where the fingers point, in the shape's frame.
+        palm: Roughly to where the palm faces, likewise.
+    """
+    hull = trimesh.convex.convex_hull(np.array(shape.vertices))
+    axes = np.array(hull.principal_inertia_vectors)
+    moments = np.array(hull.principal_inertia_components)
+    x, z = axes[int(np.argmin(moments))], axes[int(np.argmax(moments))]
+    x = x if x @ fingers >= 0.0 else -x
+    z = z if z @ palm >= 0.0 else -z
+    turn = Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=1))
+    pose = RigidTransform.from_components(np.array(hull.center_mass), turn)
+    return HandFrame(pose, np.ptp(pose.inv().apply(hull.vertices), axis=0))
+
+
+def body_hand_frame(human: Human, side: str) -> HandFrame:
+    """The frame on a body's own hand, in the frame of the hand's segment."""
+    site = human.model.site(f"{side}_palm")
+    palm = Rotation.from_quat(site.quat, scalar_first=True)
+    names = tuple(f"{side}_{each}" for each in HAND_SEGMENTS)
+    surface = segment_surface(human.measures, names, f"{side}_hand")
+    return hand_frame(surface, palm.apply([1.0, 0.0, 0.0]), palm.apply([0.0, 0.0, 1.0]))
+
+
+def palm_of(human: Human, side: str, frame: HandFrame) -> RigidTransform:
+    """``T_frame_palm``: the palm's site in the hand's frame."""
+    site = human.model.site(f"{side}_palm")
+    turn = Rotation.from_quat(site.quat, scalar_first=True)
+    return frame.pose.inv() * RigidTransform.from_components(site.pos, turn)
+
 
 START_FRAMES = 10
 """Frames from which it is taken where everything is at the beginning [1]."""

@@ -1,16 +1,45 @@
-"""How something is done: the way between two events, and when which part of it is covered."""
+"""Styles: what of a recorded path and its timing is kept between a new start and a new goal."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from enum import StrEnum
 
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation, Slerp
 
-from capar.regeneration.errors import PlanError
-from capar.regeneration.forces.force_kinds import ForceKind
+from capar.model.errors import UnknownNameError
+from capar.regeneration.forces import ForceKind
+from capar.regeneration.scenes import PlanError
 from capar.regeneration.sources import Hold, Meeting, Source
-from capar.regeneration.style_kinds import Kind
+
+
+class Kind(StrEnum):
+    """What of a recorded way is kept."""
+
+    PATH = "path"
+    """Its shape in metres beside the straight way, and its timing."""
+
+    FRAME = "frame"
+    """Its shape, turned and enlarged with the way as a whole, and its timing."""
+
+    VEL = "vel"
+    """Its timing only: the straight way (VelStyle alone)."""
+
+    EVEN = "even"
+    """Nothing: the straight way with minimum jerk."""
+
+
+def style_kind(name: str) -> Kind:
+    """The kind of that name.
+
+    Raises:
+        UnknownNameError: There is none.
+    """
+    if name not in set(Kind):
+        raise UnknownNameError("style", name, list(Kind))
+    return Kind(name)
+
 
 SHORTEST_S = 0.15
 """A shorter hold may not be observed any more [s]."""
@@ -120,3 +149,302 @@ def _at(path: RigidTransform, frames: Float[np.ndarray, "frames"]) -> RigidTrans
     spots = np.stack([np.interp(frames, known, c) for c in path.translation.T], axis=1)
     turns: Rotation = Slerp(known, path.rotation)(frames)
     return RigidTransform.from_components(spots, turns)
+
+
+SHORTEST_M = 0.02
+"""Object and hand or shoulder that are nearer have no direction between them [m]."""
+
+UPRIGHT = 0.02
+"""Sine of the angle to the vertical below which x has no direction [1]."""
+
+
+class CoordinateError(PlanError):
+    """Two points that do not span a frame."""
+
+
+@dataclass(frozen=True, eq=False)
+class SpanFrame:
+    """A frame from an object to a hand or shoulder, with the distance as its unit."""
+
+    origin: Float[np.ndarray, "3"]
+    """The object [m]."""
+
+    axes: Float[np.ndarray, "3 3"]
+    """Columns x, y and z in the world; z leads from the object to the hand or shoulder.
+
+    Left-handed, as the paper's equation has it; from one frame into another nothing is mirrored.
+    """
+
+    length_m: float
+    """Between the two [m]."""
+
+
+def frame_between(
+    goal: Float[np.ndarray, "3"],
+    base: Float[np.ndarray, "3"],
+    *,
+    aside: Float[np.ndarray, "3"] | None = None,
+) -> SpanFrame:
+    """The frame of an object and a hand or shoulder: z = base - goal, x = z x up, y = x x z.
+
+    Args:
+        goal: The object [m].
+        base: The hand at the start, or the shoulder [m].
+        aside: Takes the place of x where z is vertical.
+
+    Raises:
+        CoordinateError: The points are too near, or above each other without an ``aside``.
+    """
+    way = np.asarray(base) - np.asarray(goal)
+    length = float(np.linalg.norm(way))
+    if length < SHORTEST_M:
+        raise CoordinateError(f"object and hand are {1e3 * length:.0f} mm apart: no direction")
+    z = way / length
+    x = np.cross(z, [0.0, 0.0, 1.0])
+    if np.linalg.norm(x) < UPRIGHT:
+        if aside is None:
+            raise CoordinateError("one is above the other, so that x has no direction; say which")
+        x = aside - (aside @ z) * z
+    x = x / np.linalg.norm(x)
+    return SpanFrame(np.asarray(goal), np.stack([x, np.cross(x, z), z], axis=1), length)
+
+
+def replayed(
+    path: Float[np.ndarray, "frames 3"], before: SpanFrame, after: SpanFrame
+) -> Float[np.ndarray, "frames 3"]:
+    """A path turned and enlarged from one frame into another [m]."""
+    local = (path - before.origin) @ before.axes / before.length_m
+    return np.asarray(after.origin + after.length_m * local @ after.axes.T)
+
+
+@dataclass(frozen=True, eq=False)
+class Replay:
+    """One reach replayed for one goal in both frames."""
+
+    goal: Float[np.ndarray, "3"]
+    by_hand: Float[np.ndarray, "frames 3"]
+    by_shoulder: Float[np.ndarray, "frames 3"]
+
+    def gaps(self, hand: Float[np.ndarray, "3"]) -> tuple[float, float]:
+        """How far each replay begins from where the hand is [m]."""
+        ways = self.by_hand, self.by_shoulder
+        first, second = (np.linalg.norm(way[0] - hand) for way in ways)
+        return float(first), float(second)
+
+    @property
+    def misses(self) -> tuple[float, float]:
+        """How far each ends from where the recorded hand was beside its object [m]."""
+        ways = self.by_hand, self.by_shoulder
+        first, second = (np.linalg.norm(way[-1] - self.goal) for way in ways)
+        return float(first), float(second)
+
+
+def replays(
+    path: Float[np.ndarray, "frames 3"],
+    shoulder: Float[np.ndarray, "3"],
+    goals: Float[np.ndarray, "goals 3"],
+    *,
+    hand: Float[np.ndarray, "3"] | None = None,
+) -> list[Replay]:
+    """A reach for new goals, as Fig. 2 of the paper plots it.
+
+    Args:
+        path: Of the hand, ending at the object [m].
+        shoulder: Where the shoulder is [m].
+        goals: Where the object is instead [m].
+        hand: Where the hand starts instead; as recorded unless stated [m].
+
+    Raises:
+        CoordinateError: Two points do not span a frame.
+    """
+    start = path[0] if hand is None else hand
+    by_hand, by_shoulder = frame_between(path[-1], path[0]), frame_between(path[-1], shoulder)
+    return [
+        Replay(
+            goal,
+            replayed(path, by_hand, frame_between(goal, start)),
+            replayed(path, by_shoulder, frame_between(goal, shoulder)),
+        )
+        for goal in goals
+    ]
+
+
+SHORT_M = 0.05
+"""A shorter way from start to goal has no direction of its own [m]."""
+
+SMALLEST_M = 1e-6
+"""Added to the way of every frame, so that time is a function of the way [m]."""
+
+
+NOWHERE = (np.zeros(3), np.zeros(3))
+"""No direction off anything, at either end."""
+
+PEAK = 256.0 / 27.0
+"""Makes the largest value of s (1 - s)^3 one [1]."""
+
+
+@dataclass(frozen=True)
+class Detour:
+    """What is added to a path between its ends so that it clears the scene."""
+
+    lift_m: float = 0.0
+    """How far it is lifted half-way [m]."""
+
+    back_m: float = 0.0
+    """How far it is drawn back, towards the performer, half-way [m]."""
+
+    off_m: float = 0.0
+    """How far a hand draws off what it leaves, and keeps off what it comes to, at most [m]."""
+
+    @property
+    def size(self) -> float:
+        """How far it leads away from the path [m]."""
+        return self.lift_m + self.back_m + self.off_m
+
+    def offset(
+        self,
+        shares: Float[np.ndarray, "frames"],
+        heading: float,
+        away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = NOWHERE,
+    ) -> Float[np.ndarray, "frames 3"]:
+        """The added displacement at shares of the way [m].
+
+        Args:
+            shares: Of the way [1].
+            heading: Which way the performer faces [rad].
+            away: Directions off what is left at the start and off what is reached at the goal.
+        """
+        back = self.back_m * np.array([-np.cos(heading), -np.sin(heading), 0.0])
+        bump = 4.0 * shares * (1.0 - shares)
+        out = np.outer(bump, back + np.array([0.0, 0.0, self.lift_m]))
+        left, right = PEAK * shares * (1.0 - shares) ** 3, PEAK * shares**3 * (1.0 - shares)
+        return np.asarray(out + self.off_m * (np.outer(left, away[0]) + np.outer(right, away[1])))
+
+
+STRAIGHT = Detour()
+
+
+def way(positions: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
+    """Length of the path up to each frame [m], strictly increasing."""
+    steps = np.linalg.norm(np.diff(positions, axis=0), axis=1) + SMALLEST_M
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def arc_shares(positions: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
+    """Share of the way covered at each frame: VelStyle of the path (thesis eq. 4.1) [1]."""
+    covered = way(positions)
+    return np.asarray(covered / covered[-1])
+
+
+def mapped(
+    path: RigidTransform,
+    start: RigidTransform,
+    goal: RigidTransform,
+    *,
+    turn: float = 0.0,
+    detour: Detour = STRAIGHT,
+    heading: float = 0.0,
+    away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = NOWHERE,
+    kind: Kind = Kind.PATH,
+) -> RigidTransform:
+    """A path with other ends.
+
+    What deviates from the straight way is kept in metres and turned with the way; the share of
+    the path's length that is covered at each frame stays the same.
+
+    Args:
+        path: As it was recorded; the last frame is the goal's.
+        start: Where the new one begins.
+        goal: Where it ends.
+        turn: How far the deviations are turned about z where the way has no direction [rad].
+        detour: What is added between the ends.
+        heading: Which way the performer faces [rad].
+        away: Directions in which a detour draws off, at the start and at the goal.
+        kind: What of the path is kept.
+    """
+    old = path.translation
+    shares = arc_shares(old) if kind is not Kind.EVEN else minimum_jerk(len(path))
+    straight = kind in {Kind.VEL, Kind.EVEN}
+    along = shares if straight else _along(old, shares)
+    chord, new = old[-1] - old[0], goal.translation - start.translation
+    angle = _turn(chord, new, turn)
+    about = Rotation.from_euler("z", angle)
+    aside = about.apply(old - old[0] - np.outer(along, chord))
+    if straight:
+        aside = np.zeros_like(old)
+    elif kind is Kind.FRAME:
+        aside = _in_frames(old, start.translation, goal.translation, along, new, aside)
+    spots = start.translation + np.outer(along, new) + aside
+    spots = spots + detour.offset(shares, heading, away)
+    spots = retimed(spots, shares)
+    return RigidTransform.from_components(
+        spots, _turns(path.rotation, start.rotation, goal.rotation, shares, about)
+    )
+
+
+def minimum_jerk(frames: int) -> Float[np.ndarray, "frames"]:
+    """Shares of the way with the least jerk (Flash & Hogan 1985) [1]."""
+    s = np.linspace(0.0, 1.0, frames)
+    return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s * s))
+
+
+def _in_frames(
+    old: Float[np.ndarray, "frames 3"],
+    start: Float[np.ndarray, "3"],
+    goal: Float[np.ndarray, "3"],
+    along: Float[np.ndarray, "frames"],
+    new: Float[np.ndarray, "3"],
+    usual: Float[np.ndarray, "frames 3"],
+) -> Float[np.ndarray, "frames 3"]:
+    """What deviates from the straight way in the frame of object and hand; as usual without one."""
+    try:
+        before, after = frame_between(old[-1], old[0]), frame_between(goal, start)
+    except CoordinateError:
+        return usual
+    return np.asarray(replayed(old, before, after) - start - np.outer(along, new))
+
+
+def _along(
+    old: Float[np.ndarray, "frames 3"], shares: Float[np.ndarray, "frames"]
+) -> Float[np.ndarray, "frames"]:
+    """How far along the straight way each frame is; by the path's length where that is short."""
+    chord = old[-1] - old[0]
+    length = float(np.linalg.norm(chord))
+    return np.asarray((old - old[0]) @ chord / length**2) if length > SHORT_M else shares
+
+
+def _turn(old: Float[np.ndarray, "3"], new: Float[np.ndarray, "3"], usual: float) -> float:
+    """How far the way has turned about z [rad]."""
+    if min(np.hypot(*old[:2]), np.hypot(*new[:2])) < SHORT_M:
+        return usual
+    return float(np.arctan2(new[1], new[0]) - np.arctan2(old[1], old[0]))
+
+
+def retimed(
+    spots: Float[np.ndarray, "frames 3"], shares: Float[np.ndarray, "frames"]
+) -> Float[np.ndarray, "frames 3"]:
+    """The same path with a given share of its length covered at each frame.
+
+    Args:
+        spots: Of the path [m].
+        shares: Of its length [1], from 0 to 1.
+    """
+    covered = arc_shares(spots)
+    return np.stack([np.interp(shares, covered, column) for column in spots.T], axis=1)
+
+
+def _turns(
+    old: Rotation,
+    first: Rotation,
+    last: Rotation,
+    shares: Float[np.ndarray, "frames"],
+    about: Rotation,
+) -> Rotation:
+    """The old deviations from an even turn, on the even turn between the new ends."""
+    deviation = old * _even(old[0], old[-1], shares).inv()
+    return about * deviation * about.inv() * _even(first, last, shares)
+
+
+def _even(first: Rotation, last: Rotation, shares: Float[np.ndarray, "frames"]) -> Rotation:
+    axis = (last * first.inv()).as_rotvec()
+    return Rotation.from_rotvec(np.outer(shares, axis)) * first

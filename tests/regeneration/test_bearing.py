@@ -20,8 +20,8 @@ from capar.body.sensors import PERFECT
 from capar.model.capture import Capture, Shape, Stream, TagObject
 from capar.pipelines.round_trips import body, observed_source, round_trip
 from capar.regeneration import PlanError, Source
-from capar.regeneration.bearing import FRICTION, Ride, rides_of, steadiness, with_riders
 from capar.regeneration.collisions import inner_gap
+from capar.regeneration.holds import FRICTION, Ride, rides_of, steadiness, with_riders
 from capar.regeneration.scenes import raised, resized, stack
 
 RATE_HZ = 30.0

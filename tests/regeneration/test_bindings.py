@@ -13,13 +13,12 @@ from capar.body.scenes import Thing, box, cup, table
 from capar.body.scripted_actions import action_capture
 from capar.model.capture import TagType
 from capar.model.errors import UnknownNameError
-from capar.pipelines.applicability import Applied, check_applicable
+from capar.pipelines.instantiation import Applied, check_applicable
 from capar.pipelines.observation import observe
 from capar.pipelines.recordings import observed_recording
 from capar.pipelines.round_trips import observed_source
-from capar.regeneration.bindings import AmbiguousError, Binding, Role, bind, roles_of
-from capar.regeneration.errors import PlanError
-from capar.regeneration.scenes import Scene
+from capar.regeneration.roles import AmbiguousError, Binding, Role, bind, roles_of
+from capar.regeneration.scenes import PlanError, Scene
 from kb import Actionary
 from kb.findings import Ability
 

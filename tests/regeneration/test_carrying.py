@@ -9,10 +9,9 @@ from capar.body.human import Human
 from capar.body.scenes import Thing, box, cup, table
 from capar.model.capture import TagType
 from capar.regeneration import PlanError
-from capar.regeneration.carrying import LIFTS_M, Carrying
-from capar.regeneration.path_mapping import STRAIGHT, Detour
+from capar.regeneration.paths import LIFTS_M, Carrying
 from capar.regeneration.scenes import Scene
-from capar.regeneration.style_kinds import Kind
+from capar.regeneration.styles import STRAIGHT, Detour, Kind
 
 HEIGHT_M = 0.8
 

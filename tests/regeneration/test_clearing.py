@@ -12,8 +12,7 @@ from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.scenes import Thing, box
 from capar.model.capture import Shape, TagType
-from capar.regeneration.clearing import CLEAR_M, ClearTask
-from capar.regeneration.collisions import NEAR_M, Surroundings
+from capar.regeneration.collisions import CLEAR_M, NEAR_M, ClearTask, Surroundings
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver, Targets, vectors
 

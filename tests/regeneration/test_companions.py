@@ -9,12 +9,9 @@ from scipy.spatial.transform import RigidTransform
 from capar.body.scripted_actions import action_capture
 from capar.pipelines.round_trips import body, observed_source, round_trip
 from capar.regeneration import PlanError, Source
-from capar.regeneration.companions import Companion, companions_of, hand_spans
-from capar.regeneration.fastening import resized_with
-from capar.regeneration.holding import Hold
+from capar.regeneration.holds import Companion, Hold, companions_of, hand_spans
 from capar.regeneration.planning import reachable
-from capar.regeneration.scene_files import drawn_scene
-from capar.regeneration.scenes import moved, raised
+from capar.regeneration.scenes import drawn_scene, moved, raised, resized_with
 
 
 @cache

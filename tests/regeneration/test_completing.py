@@ -15,7 +15,7 @@ from capar.model.errors import CaparError, FileError
 from capar.pipelines.observation import observe
 from capar.pipelines.round_trips import observed_source
 from capar.regeneration import PlanError
-from capar.regeneration.completing import Completion, completed, read_completion
+from capar.regeneration.captures import Completion, completed, read_completion
 
 RATE_HZ = 30.0
 

@@ -14,7 +14,7 @@ from capar.model.errors import FileError
 from capar.pipelines.round_trips import body, numbered_scene, observed_source, round_trip
 from capar.regeneration import Source
 from capar.regeneration.body_frames import body_frames
-from capar.regeneration.constrained_ways import (
+from capar.regeneration.goals import (
     HINGE,
     PLANE,
     RAIL,
@@ -23,12 +23,11 @@ from capar.regeneration.constrained_ways import (
     flattened,
     planes_of,
     scene_constraints,
+    thing_goals,
 )
-from capar.regeneration.scene_files import read_scene
-from capar.regeneration.scenes import Scene, mobile, raised
+from capar.regeneration.paths import thing_paths
+from capar.regeneration.scenes import Scene, mobile, raised, read_scene
 from capar.regeneration.styles import own_style
-from capar.regeneration.thing_goals import thing_goals
-from capar.regeneration.thing_paths import thing_paths
 
 LENGTHS = st.floats(-1.0, 1.0)
 

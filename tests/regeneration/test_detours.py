@@ -3,8 +3,8 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from capar.regeneration.hand_paths import DETOURS, WORTH_M, smallest_detour
-from capar.regeneration.path_mapping import STRAIGHT, Detour
+from capar.regeneration.paths import DETOURS, WORTH_M, smallest_detour
+from capar.regeneration.styles import STRAIGHT, Detour
 
 shortfalls = st.lists(st.floats(0.0001, 0.02), min_size=len(DETOURS), max_size=len(DETOURS))
 

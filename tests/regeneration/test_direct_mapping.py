@@ -14,9 +14,8 @@ from capar.body.recording import Truth, write_bundle
 from capar.body.scripted_actions import action_capture
 from capar.pipelines.round_trips import body, observed_source
 from capar.regeneration import Source, map_directly
-from capar.regeneration.departures import departures
-from capar.regeneration.direct_mapping import axis_mapped, mapped_plan
-from capar.regeneration.path_mapping import SHORT_M
+from capar.regeneration.direct_mapping import axis_mapped, departures, mapped_plan
+from capar.regeneration.styles import SHORT_M
 
 RATE_HZ = 30.0
 

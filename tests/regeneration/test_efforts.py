@@ -18,20 +18,21 @@ from capar.model.errors import CaparError, UnknownNameError
 from capar.pipelines.observation import observe
 from capar.pipelines.round_trips import observed_source
 from capar.regeneration import PlanError, Source, capture_of
-from capar.regeneration.manner import (
+from capar.regeneration.efforts import (
     Effort,
+    adverbs,
+    check_effort,
     effort_of_words,
+    overshot,
+    paused,
     read_effort,
     regenerate_with_effort,
+    shaped,
+    timed,
     told_of_words,
+    with_effort,
 )
-from capar.regeneration.manner.adverbs import adverbs
-from capar.regeneration.manner.limits import check_effort
-from capar.regeneration.manner.profiles import overshot, paused, shaped, timed
-from capar.regeneration.manner.reshaping import with_effort
-from capar.regeneration.path_mapping import arc_shares
-from capar.regeneration.style_kinds import Kind
-from capar.regeneration.styles import own_style, paced
+from capar.regeneration.styles import Kind, arc_shares, own_style, paced
 
 EFFORTS = st.floats(-1.0, 1.0)
 

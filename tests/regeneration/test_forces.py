@@ -11,8 +11,7 @@ from capar.model.capture import Capture, Sensor
 from capar.pipelines.observation import observe
 from capar.pipelines.round_trips import body, observed_source, round_trips
 from capar.regeneration import Motion, PlanError, Quality, Source, regenerate
-from capar.regeneration.forces.flights import arm_mass
-from capar.regeneration.forces.force_kinds import ForceKind
+from capar.regeneration.forces import ForceKind, arm_mass
 from capar.regeneration.scenes import raised, resized
 from capar.regeneration.styles import own_style
 from capar.views.tables import force_lines

@@ -6,7 +6,7 @@ import pytest
 from capar.body.human import ROOT_SIZE
 from capar.body.scripted_actions import action_capture
 from capar.pipelines.round_trips import body, observed_source
-from capar.regeneration.guides import FADE_S, guide_of
+from capar.regeneration.motion import FADE_S, guide_of
 from capar.regeneration.planning import reachable
 from capar.regeneration.solving import Solver
 

@@ -11,15 +11,21 @@ from exit_codes import exit_code
 from capar.body.recording import truth_together, write_bundle
 from capar.body.scripted_actions import joint_capture, performed_together
 from capar.model.errors import CaparError, UnknownNameError
-from capar.pipelines.joint_round_trips import bodies, compared, observed_joint_source
+from capar.pipelines.round_trips import bodies, compared, observed_joint_source
 from capar.pipelines.trials import trial_of
 from capar.regeneration import PlanError
-from capar.regeneration.hand_overs import Cast, Place, offer
-from capar.regeneration.joint_captures import joint_capture_of
-from capar.regeneration.joint_quality import TwoBodies, joint_gates
-from capar.regeneration.joint_regenerating import JointMotion, regenerate_together
-from capar.regeneration.joint_sources import JointSource
-from capar.regeneration.scene_files import read_scenes
+from capar.regeneration.captures import joint_capture_of
+from capar.regeneration.hand_overs import (
+    Cast,
+    JointMotion,
+    JointSource,
+    Place,
+    TwoBodies,
+    joint_gates,
+    offer,
+    regenerate_together,
+)
+from capar.regeneration.scenes import read_scenes
 
 RATE_HZ = 30.0
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.regeneration.path_mapping import Detour, arc_shares, mapped
+from capar.regeneration.styles import Detour, arc_shares, mapped
 
 number = st.floats(-1.0, 1.0)
 place = st.tuples(number, number, number)

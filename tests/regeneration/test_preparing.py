@@ -17,15 +17,24 @@ from capar.body.scripted_actions import ACTIONS, action_capture
 from capar.model.capture import TagType
 from capar.model.errors import CaparError
 from capar.pipelines.instantiation import Asked, Instance, Knowledge, instantiate
-from capar.pipelines.preparation_plans import shortest, unmet, why_unmet
-from capar.pipelines.preparations import measured_world, prepare
-from capar.pipelines.preparing import Problem, World, problem_of
+from capar.pipelines.preparation import (
+    Problem,
+    Way,
+    World,
+    asserted,
+    measured_world,
+    prepare,
+    problem_of,
+    shortest,
+    unmet,
+    ways_of,
+    why_unmet,
+)
 from capar.pipelines.recordings import observed_recording
 from capar.pipelines.round_trips import observed_source
 from capar.pipelines.trials import trial_of
-from capar.pipelines.ways import Way, asserted, ways_of
 from capar.regeneration import PlanError, Source, regenerate
-from capar.regeneration.contact_tables import Asserted, contact_gate, disagreements
+from capar.regeneration.quality import Asserted, contact_gate, disagreements
 from capar.regeneration.scenes import Scene
 
 RATE_HZ = 30.0
@@ -211,7 +220,7 @@ def test_without_a_plan_nothing_is_written(
 ) -> None:
     out = tmp_path / "out"
     monkeypatch.setattr(
-        "capar.pipelines.preparations.regenerate", lambda *_: (_ for _ in ()).throw(CaparError("x"))
+        "capar.pipelines.preparation.regenerate", lambda *_: (_ for _ in ()).throw(CaparError("x"))
     )
     scene = ("--scene", str(worlds.scene("crowded")), "--output", str(out))
     assert exit_code(monkeypatch, "regenerate", "carry", *scene, *worlds.options) == 2

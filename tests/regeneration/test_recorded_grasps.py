@@ -15,25 +15,23 @@ from capar.body.scripted_actions import action_capture
 from capar.model.capture import Capture, Shape, Stream, TagType
 from capar.model.facts import Displaced, Touching
 from capar.pipelines.round_trips import body, observed_source
-from capar.regeneration import PlanError, attending
+from capar.regeneration import PlanError, planning
 from capar.regeneration.body_frames import body_frames, free_pose, rest_pose
 from capar.regeneration.collisions import Surroundings
-from capar.regeneration.drafts import Draft
+from capar.regeneration.goals import TOUCH_M, touching_shift
 from capar.regeneration.grips import Turn, drawn_turns
-from capar.regeneration.hand_frames import HandAxes, stated_hand_frame
-from capar.regeneration.holding import (
+from capar.regeneration.holds import (
     INSTANTS,
     Hold,
     holds_of,
     with_touches,
     with_unseen_ends,
 )
-from capar.regeneration.planning import reachable
+from capar.regeneration.planning import Draft, reachable
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import Source, source_of
+from capar.regeneration.sources import HandAxes, Source, source_of, stated_hand_frame
 from capar.regeneration.styles import own_style
-from capar.regeneration.thing_goals import TOUCH_M, touching_shift
 
 RATE_HZ = 30.0
 
@@ -239,14 +237,14 @@ def test_what_is_tipped_at_the_mouth_meets_it_from_when_it_comes_to_when_it_leav
 
 def test_hands_are_led_more_firmly_at_events_alone() -> None:
     source = _source("pick_up")
-    usual, firmer = (attending.grasps(source, 0.5, (), weight) for weight in (1.0, 2.0))
+    usual, firmer = (planning.grasps(source, 0.5, (), weight) for weight in (1.0, 2.0))
     for hold in source.holds:
         for frame in (hold.first, hold.last):
             assert usual[hold.side][frame] == pytest.approx(1.0)
             assert firmer[hold.side][frame] == pytest.approx(2.0)
         halfway = (hold.first + hold.last) // 2
         assert firmer[hold.side][halfway] == pytest.approx(1.0)
-        again = attending.grasps(source, 0.5, (halfway,), 2.0)
+        again = planning.grasps(source, 0.5, (halfway,), 2.0)
         assert again[hold.side][halfway] == pytest.approx(2.0)
 
 

@@ -14,12 +14,12 @@ from capar.model.capture import Capture
 from capar.pipelines.round_trips import body, observed_source, round_trips
 from capar.regeneration import Motion, PlanError, Quality, Source, regenerate
 from capar.regeneration.body_frames import body_frames
-from capar.regeneration.departures import departures
-from capar.regeneration.hand_frames import body_hand_frame
-from capar.regeneration.motions import perform_plan
+from capar.regeneration.direct_mapping import departures
+from capar.regeneration.motion import perform_plan
 from capar.regeneration.planning import plan
 from capar.regeneration.quality import quality
 from capar.regeneration.scenes import raised, resized
+from capar.regeneration.sources import body_hand_frame
 
 pytestmark = pytest.mark.long
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from capar.body.scripted_actions import performed
-from capar.regeneration.replayed_reaches import (
+from capar.regeneration.styles import (
     CoordinateError,
     frame_between,
     replayed,

@@ -7,8 +7,7 @@ import pytest
 
 from capar.body.scenes import Thing, box, cup, table
 from capar.model.errors import CaparError, UnknownNameError
-from capar.regeneration.scene_files import DRAWS, Draw, drawn_scene, read_scene
-from capar.regeneration.scenes import Scene, raised, resized
+from capar.regeneration.scenes import DRAWS, Draw, Scene, drawn_scene, raised, read_scene, resized
 
 
 def _scene() -> Scene:

@@ -14,9 +14,14 @@ from capar.body.scripted_actions import action_capture
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from capar.pipelines.recordings import Recording, observed_recording
-from capar.pipelines.spoken_requests import Choice, choices, observed_actions
+from capar.pipelines.spoken_requests import (
+    Choice,
+    RequestError,
+    choices,
+    observed_actions,
+    read_requests,
+)
 from capar.pipelines.trials import trial_of
-from capar.regeneration.requests import RequestError, read_requests
 
 DRINK = observations.drink_from_mug()
 BOTH = observations.pick_up_with_both_hands()

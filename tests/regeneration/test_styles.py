@@ -10,10 +10,16 @@ from capar.model.errors import UnknownNameError
 from capar.pipelines.observation import observe
 from capar.pipelines.round_trips import by_hand, observed_source
 from capar.regeneration import PlanError, Source, capture_of, regenerate
-from capar.regeneration.mirroring import mirrored
-from capar.regeneration.path_mapping import arc_shares, mapped
-from capar.regeneration.style_kinds import Kind, style_kind
-from capar.regeneration.styles import borrowed_style, own_style, paced
+from capar.regeneration.captures import mirrored
+from capar.regeneration.styles import (
+    Kind,
+    arc_shares,
+    borrowed_style,
+    mapped,
+    own_style,
+    paced,
+    style_kind,
+)
 
 
 @cache

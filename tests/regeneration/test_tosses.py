@@ -13,23 +13,21 @@ from capar.body.scripted_actions import action_capture
 from capar.pipelines.round_trips import Trip, body, observed_source, round_trips
 from capar.regeneration import Motion, PlanError, Source, planning
 from capar.regeneration.body_frames import body_frames
-from capar.regeneration.drafts import Draft
-from capar.regeneration.forces.force_kinds import ForceKind
-from capar.regeneration.forces.tosses import end_velocity, flight_faults
-from capar.regeneration.launches import launches_of
-from capar.regeneration.manner import read_effort
-from capar.regeneration.manner.limits import regenerate_with_effort
+from capar.regeneration.efforts import read_effort, regenerate_with_effort
+from capar.regeneration.forces import ForceKind, end_velocity, flight_faults
+from capar.regeneration.goals import thing_goals
+from capar.regeneration.holds import launches_of
 from capar.regeneration.planning import (
     MOST_CHANGES,
     MOST_PERFORMED,
     STEPS_M,
+    Draft,
     Search,
     reachable,
 )
 from capar.regeneration.quality import quality
 from capar.regeneration.scenes import raised
 from capar.regeneration.styles import own_style
-from capar.regeneration.thing_goals import thing_goals
 from extractors.forces.free_motion import GRAVITY_MPS2
 
 RATE_HZ = 30.0

@@ -16,7 +16,7 @@ from capar.body.performing import RELAXED
 from capar.body.scripts import SIDES
 from capar.model import geometry
 from capar.model.capture import Capture, Sensor
-from capar.regeneration.hand_frames import body_hand_frame, hand_frame, palm_of
+from capar.regeneration.sources import body_hand_frame, hand_frame, palm_of
 
 CLOSE_M, CLOSE_RAD = 0.002, float(np.radians(1.0))
 """What is missed by less is followed [m, rad]."""

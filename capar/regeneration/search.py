@@ -3,14 +3,11 @@
 from collections.abc import Callable
 
 from capar.body.human import Human
-from capar.regeneration.drafts import Draft
-from capar.regeneration.errors import PlanError
-from capar.regeneration.guides import Guide, guide_of
-from capar.regeneration.hand_paths import Care
-from capar.regeneration.motions import Motion, perform_plan
-from capar.regeneration.planning import led, reachable
+from capar.regeneration.motion import Guide, Motion, guide_of, perform_plan
+from capar.regeneration.paths import Care
+from capar.regeneration.planning import Draft, led, reachable
 from capar.regeneration.quality import Quality, quality
-from capar.regeneration.scenes import Scene
+from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import Style
 

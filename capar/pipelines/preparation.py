@@ -1,0 +1,1155 @@
+"""Preparation: what an action needs and its scene lacks, planned over recorded steps."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.human import Human
+from capar.body.scenes import Thing
+from capar.export.plans import PlanExportError, PlanSource, PlanStep, plan_source
+from capar.model.capture import Capture, TagType
+from capar.model.errors import RuleError
+from capar.model.facts import Touching as Touch
+from capar.model.observation import Observation
+from capar.model.par import Upar
+from capar.pipelines.instantiation import Instance
+from capar.pipelines.observation import observe
+from capar.pipelines.recordings import Recording
+from capar.pipelines.round_trips import by_hand, observed_source
+from capar.pipelines.trials import trial_of
+from capar.regeneration.captures import OTHER, Completion, completed, scene_after
+from capar.regeneration.collisions import Surroundings
+from capar.regeneration.efforts import EffortReport
+from capar.regeneration.goals import put_down_poses
+from capar.regeneration.motion import Motion
+from capar.regeneration.planning import beside, check_stance, is_possible, why_unreachable
+from capar.regeneration.quality import (
+    HEAD,
+    TOUCHES_M,
+    Asserted,
+    Contact,
+    Measuring,
+    Quality,
+    contact_gate,
+    contacts_of,
+)
+from capar.regeneration.roles import (
+    Kinds,
+    captured_scene,
+    cast,
+    ends_on,
+    kind_of,
+    own_names,
+    with_only,
+)
+from capar.regeneration.scenes import PlanError, Scene, mobile, moved
+from capar.regeneration.search import regenerate
+from capar.regeneration.solving import Solver
+from capar.regeneration.sources import Source, source_of
+from capar.regeneration.stepping import STRIDE, Stepping, step_to, stepping_quality
+from capar.regeneration.styles import Style
+from capar_rules.engine.solver import Answer, Term, best, rule_file, text_of
+
+MARGIN_S = 0.3
+"""So long a contact is kept before a step that ends it, or after one that makes it [s]."""
+
+Open = Callable[[Recording], Source]
+"""Observes a recording, so that it can be performed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """A recording of one hand that handles one thing, and else at most what that stands on."""
+
+    recording: Recording
+    source: Source
+    side: str
+    part: str
+    """The thing that the hand handles."""
+
+    steps: tuple[PlanStep, ...]
+
+    @cached_property
+    def last(self) -> int:
+        """The recording's last frame."""
+        return len(self.source.times) - 1
+
+    def relations(self, number: int) -> dict[str, tuple[str, str]]:
+        """The bits of a step before and after it: of ``touch``, and of ``stand`` if it has any.
+
+        Args:
+            number: Of the step.
+        """
+        features = self.steps[number].ipar.core.constraint.features
+        found = {"touch": (features.rel_start[0], features.rel_end[0])}
+        if features.count > 1:
+            place = features.count
+            found["stand"] = (features.rel_start[place], features.rel_end[place])
+        return found
+
+    def moves(self, number: int) -> bool:
+        """Whether a step moves the thing."""
+        return self.steps[number].moves
+
+    def frame(self, number: int) -> int:
+        """The frame at which a step begins; of one past the last, the recording's last frame."""
+        if number == len(self.steps):
+            return self.last
+        return round(self.steps[number].step.begin * self.last)
+
+    def part_of(self, first: int, last: int, side: str) -> Source:
+        """Some steps of it, one after the other, with a hand.
+
+        Args:
+            first: Number of the first step.
+            last: Number of the last one.
+            side: Of the hand.
+
+        Raises:
+            PlanError: What is cut out does not determine a performance.
+        """
+        source, margin = self.source, round(MARGIN_S * self.source.rate_hz)
+        lead = margin if first and self.relations(first)["touch"] == ("1", "0") else 0
+        tail = margin if self.relations(last)["touch"] == ("0", "1") else 0
+        begin = self.frame(first) - lead if first else 0
+        ends = max(begin, 0), min(self.frame(last + 1) + tail, self.last)
+        if ends != (0, self.last):
+            source = _cut(source, *(float(source.capture.times[frame]) for frame in ends))
+        return by_hand(source, side) if any(h.side != side for h in source.holds) else source
+
+
+def ways_of(recordings: Iterable[Recording], open_source: Open) -> tuple[Way, ...]:
+    """The recordings among some in which one hand handles one thing and nothing else is done.
+
+    Args:
+        recordings: What can be performed.
+        open_source: Observes one.
+    """
+    found = []
+    for recording in recordings:
+        acting = {s.ee for s in recording.steps if s.ee.endswith("_hand") and len(s.objects)}
+        handled = {step.objects[0] for step in recording.steps}
+        if len(acting) == 1 and len(handled) == 1:
+            found += _way(recording, open_source)
+    return tuple(found)
+
+
+def _way(recording: Recording, open_source: Open) -> list[Way]:
+    try:
+        source = open_source(recording)
+        plan = steps_of(source.observation)
+    except (PlanError, PlanExportError):
+        return []
+    alone = source.launches or source.tosses
+    if source.poises or source.meetings or alone or not source.holds:
+        return []
+    side = source.holds[0].side
+    steps = tuple(step for step in plan.links[source.hands[side].sensor] if step.ipar.objects)
+    things = {name for step in steps for name in step.ipar.objects}
+    if not things <= set(source.scene.things):
+        return []
+    return [Way(recording, source, side, source.holds[0].thing, steps)]
+
+
+def opened(recording: Recording) -> Source:
+    """A recording, ready to be performed.
+
+    Raises:
+        PlanError: The capture does not determine a performance.
+    """
+    return observed_source(recording.capture)
+
+
+def steps_of(observation: Observation) -> PlanSource:
+    """The steps of an observed action with their PARs.
+
+    Raises:
+        PlanExportError: It has no steps.
+    """
+    par = observation.complex_par
+    upars: tuple[Upar, ...] = observation.upars
+    return plan_source(par, observation.ipars, upars, {}, name=par.name)
+
+
+def asserted(source: Source) -> list[Asserted]:
+    """What the steps of a performance assert at their ends, in order of time.
+
+    Args:
+        source: What is performed.
+    """
+    names = {name: name for name in source.paths} | {HEAD: HEAD}
+    names |= {hand.sensor: side for side, hand in source.hands.items()}
+    last = len(source.times) - 1
+    found = []
+    for steps in steps_of(source.observation).links.values():
+        for one in steps:
+            frame = round((one.step.begin + one.step.share) * last)
+            contacts = contacts_of(one.ipar.post_assertions, names)
+            found.append(Asserted(one.step.action, frame, contacts, one.ipar.core.moved))
+    return sorted(found, key=lambda step: step.frame)
+
+
+def _cut(source: Source, from_s: float, to_s: float) -> Source:
+    """A part of what was recorded, by a performer who stands where the whole one did."""
+    scene = source.scene
+    capture = completed(source.capture, Completion(from_s=from_s, to_s=to_s))
+    observation = observe(capture, rules=source.observation.profile)
+    stance = (scene.place, scene.heading)
+    made = source_of(capture, observation, stance=stance, floor_m=scene.floor_m)
+    return replace(made, notes=source.notes)
+
+
+ROOM_M = 0.01
+"""Things that are nearer are in each other's way [m]."""
+
+ASIDE_M = 0.06
+"""So far from others a thing is put: a hand has room between them [m]."""
+
+EDGE_M = 0.02
+"""How far a thing that is put down stays from its support's edge [m]."""
+
+STEP_M = 0.06
+"""Of the grid on which places are sought [m]."""
+
+ARM = 0.42
+"""How far from where it stands a body puts things, as a share of its stature [1]."""
+
+MOST = 8
+"""Places that are offered on each support [1]."""
+
+Spot = tuple[float, float, float]
+
+
+class Room:
+    """Distances between things of a scene, wherever they are put."""
+
+    def __init__(self, human: Human, scene: Scene) -> None:
+        self.human, self.scene = human, scene
+        self.around = Surroundings(human, scene)
+        self.rest = Solver(human, (*scene.place, scene.floor_m), scene.heading).rest
+
+    def near(self, poses: Mapping[str, RigidTransform], within_m: float) -> set[frozenset[str]]:
+        """The things that are nearer to each other than so much.
+
+        Args:
+            poses: Of things that are not where the scene has them.
+            within_m: The distance [m].
+        """
+        usual = {name: thing.pose for name, thing in self.scene.things.items()}
+        self.around.pose(self.rest, {**usual, **poses})
+        pairs = self.around.things_near()
+        return {frozenset((p.part, p.thing)) for p in pairs if p.distance_m < within_m}
+
+    def meet(self, first: str, at: RigidTransform, second: str, there: RigidTransform) -> bool:
+        """Whether there is no room for two things, each at a pose."""
+        return frozenset((first, second)) in self.near({first: at, second: there}, ROOM_M)
+
+    def places(
+        self, name: str, support: str, keep_off: Mapping[str, RigidTransform]
+    ) -> tuple[Spot, ...]:
+        """Free places for a thing on another one within an arm's length, nearest first.
+
+        Args:
+            name: The thing.
+            support: What it is put on.
+            keep_off: Where other things will be that have to have room besides.
+        """
+        found: list[Spot] = []
+        thing, tops = self.scene.thing(name), self.scene.thing(support)
+        height = _top(tops) - float(_corners(thing)[0, 2] - thing.place[2])
+        for x, y in sorted(self._grid(tops), key=lambda spot: self._far(thing, spot)):
+            pose = RigidTransform.from_components([x, y, height], thing.pose.rotation)
+            if _within(thing, pose, tops) and self._free(name, support, pose, keep_off):
+                found.append((x, y, height))
+            if len(found) == MOST:
+                break
+        return tuple(found)
+
+    def _grid(self, support: Thing) -> Iterator[tuple[float, float]]:
+        (low_x, low_y, _), (high_x, high_y, _) = _corners(support)
+        for x in np.arange(low_x + 0.5 * STEP_M, high_x, STEP_M):
+            for y in np.arange(low_y + 0.5 * STEP_M, high_y, STEP_M):
+                away = np.hypot(x - self.scene.place[0], y - self.scene.place[1])
+                if away <= ARM * self.human.measures["stature"]:
+                    yield float(x), float(y)
+
+    def _far(self, thing: Thing, spot: tuple[float, float]) -> float:
+        return float(np.hypot(spot[0] - thing.place[0], spot[1] - thing.place[1]))
+
+    def _free(
+        self, name: str, support: str, pose: RigidTransform, keep_off: Mapping[str, RigidTransform]
+    ) -> bool:
+        others = {other: keep_off[other] for other in keep_off if other != name}
+        for poses in ({name: pose}, {name: pose, **others}):
+            near = self.near(poses, ASIDE_M)
+            if any(name in pair and support not in pair for pair in near):
+                return False
+        return True
+
+
+def standing_places(scene: Scene) -> tuple[str, ...]:
+    """Fixed things on which others can be put, sorted."""
+    return tuple(sorted(t.name for t in scene.things.values() if t.tag is TagType.FIXED))
+
+
+def _corners(thing: Thing) -> Float[np.ndarray, "2 3"]:
+    spots = thing.pose.apply(np.array(thing.shape.vertices))
+    return np.stack([spots.min(axis=0), spots.max(axis=0)])
+
+
+def _top(thing: Thing) -> float:
+    return float(_corners(thing)[1, 2])
+
+
+def _within(thing: Thing, pose: RigidTransform, support: Thing) -> bool:
+    """Whether all of a thing is above its support."""
+    spots = pose.apply(np.array(thing.shape.vertices))[:, :2]
+    low, high = _corners(support)[:, :2]
+    return bool((spots > low + EDGE_M).all() and (spots < high - EDGE_M).all())
+
+
+Condition = tuple[str, ...]
+"""``touch`` with a hand and a thing, ``free`` with a hand, ``stand`` with a thing and its support,
+``clear`` with the thing whose goal it is, or ``bare`` with a thing."""
+
+Touching = frozenset[tuple[str, str]]
+"""Hands, by their sides, with the things that they touch."""
+
+MEANING = {
+    "touch": "contact({} hand, {})",
+    "free": "no contact of the {} hand",
+    "stand": "contact({}, {})",
+    "clear": "nothing else where {!r} is put",
+    "bare": "nothing on {!r}",
+}
+
+
+@dataclass(frozen=True)
+class World:
+    """A scene with who touches what in it, as measured."""
+
+    scene: Scene
+    touching: Touching = frozenset()
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A world, and what is wanted of it."""
+
+    world: World
+    wanted: tuple[Condition, ...]
+    goals: Mapping[str, RigidTransform]
+    """Where the action puts things in the end, by the scene's names."""
+
+    parts: frozenset[str]
+    """The things of the scene that take part in the action."""
+
+    room: Room
+    kinds: Kinds
+
+
+def told(condition: Condition) -> str:
+    """A condition in words."""
+    return MEANING[condition[0]].format(*condition[1:])
+
+
+def problem_of(instance: Instance, world: World, kinds: Kinds) -> Problem:
+    """What a bound action needs of a world.
+
+    Hands touch what they touch when the recording begins, and nothing else; things stand as its
+    preparatory specifications say; where things are put there is room; what is moved bears nothing
+    that it did not bear.
+
+    Args:
+        instance: The action.
+        world: As it is.
+        kinds: The hierarchy of kinds.
+
+    Raises:
+        PlanError: Something would be put down where nothing supports it.
+    """
+    source, where, _ = instance.placed(world.scene)
+    parts = instance.parts
+    goals = {}
+    for role, pose in put_down_poses(source, where).items():
+        if role in parts:  # as the frame of the scene's thing, of which the part's is moved
+            own = world.scene.thing(parts[role])
+            goals[own.name] = pose * where.thing(role).pose.inv() * own.pose
+    began = {(h.side, parts[h.thing]) for h in source.holds if h.first == 0 and h.thing in parts}
+    acting = {side for side, _ in began}
+    sides = {*source.hands, *(side for side, _ in world.touching)}
+    wanted: list[Condition] = [("touch", side, thing) for side, thing in sorted(began)]
+    wanted += [("free", side) for side in sorted(sides - acting)]
+    wanted += [
+        ("stand", parts[first], parts[second])
+        for first, second in _stands(source.observation)
+        if first in parts and second in parts and first not in source.scene.fastened
+    ]
+    wanted += [("clear", name) for name in sorted(goals)]
+    bare = (role for role in instance.roles if role.moved and not role.bears)
+    wanted += [("bare", parts[role.name]) for role in bare]
+    room = Room(instance.asked.human, world.scene)
+    return Problem(world, tuple(wanted), goals, frozenset(parts.values()), room, kinds)
+
+
+def _stands(observation: Observation) -> Iterator[tuple[str, str]]:
+    """What stands on what by preparatory specifications that no earlier step makes true."""
+    known: set[tuple[str, ...]] = set()
+    for step in sorted(steps_of(observation).steps, key=lambda one: one.step.begin):
+        for preparation in step.ipar.preparation:
+            needed, pair = preparation.condition, preparation.condition.arguments
+            if needed.kind == "contact" and pair[0] != step.ipar.ee and pair not in known:
+                known.add(pair)
+                yield pair[0], pair[1]
+        known |= {one.arguments for one in step.ipar.post_assertions if one.holds}
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """Where a thing may be put."""
+
+    term: Term
+    thing: str
+    support: str
+    pose: RigidTransform
+    way: str = ""
+    """The only recording that puts it there; empty where any one may."""
+
+
+def places_of(problem: Problem, ways: Sequence[Way]) -> tuple[Place, ...]:
+    """Where things may be put: free places, and as far from where they stand as was recorded.
+
+    Args:
+        problem: The scene, and what has to stay clear.
+        ways: What can be done.
+    """
+    scene = problem.world.scene
+    found = []
+    for name in mobile(scene):
+        for support in standing_places(scene):
+            for number, spot in enumerate(problem.room.places(name, support, problem.goals)):
+                pose = RigidTransform.from_components(spot, scene.thing(name).pose.rotation)
+                found.append(Place(("spot", name, support, number), name, support, pose))
+        for way in ways:
+            if any(way.relations(number).get("stand") == ("1", "1") for number in _moving(way)):
+                found += _slid(problem, way, scene.thing(name))
+    return tuple(found)
+
+
+def _moving(way: Way) -> list[int]:
+    return [number for number in range(len(way.steps)) if way.moves(number)]
+
+
+def _slid(problem: Problem, way: Way, thing: Thing) -> list[Place]:
+    """Where a thing is that goes as far along its support as the recorded one did."""
+    scene, path = problem.world.scene, way.source.paths[way.part].translation
+    turn = Rotation.from_euler("z", scene.heading - way.source.scene.heading)
+    x, y = np.asarray(thing.place)[:2] + turn.apply(path[-1] - path[0])[:2]
+    support = scene.support(thing.name)
+    there = moved(scene, thing.name, (x, y, thing.place[2]), thing.heading)
+    if not support or there.support(thing.name) != support:
+        return []
+    pose = there.thing(thing.name).pose
+    name = way.recording.name
+    return [Place(("slid", name, thing.name), thing.name, support, pose, name)]
+
+
+def world_facts(problem: Problem, places: Sequence[Place]) -> Iterator[str]:
+    """Where everything is, what is wanted, and what has no room beside what.
+
+    Args:
+        problem: The world.
+        places: Where things may be put.
+    """
+    scene = problem.world.scene
+    for side, thing in sorted(problem.world.touching):
+        yield _fact("touches_first", side, thing)
+    held = {thing for _, thing in problem.world.touching}
+    for name in sorted(scene.things):
+        support = scene.support(name)
+        in_air = name in held and not support
+        yield _fact("at_first", name, "air" if in_air else ("start", name))
+        if support:
+            yield _fact("on", ("start", name), support)
+    for condition in problem.wanted:
+        yield _fact("wanted", condition)
+    for place in places:
+        yield _fact("on", place.term, place.support)
+        far = np.linalg.norm(place.pose.translation - np.asarray(scene.thing(place.thing).place))
+        yield _fact("far", place.term, round(1000.0 * float(far)))
+    yield from _meetings(problem, [*_goals(problem), *places])
+
+
+def _goals(problem: Problem) -> Iterator[Place]:
+    for name, pose in problem.goals.items():
+        x, y, z = (float(value) for value in pose.translation)
+        support = moved(problem.world.scene, name, (x, y, z), 0.0).support(name)
+        yield Place(("goal", name), name, support, pose)
+
+
+def _meetings(problem: Problem, places: Sequence[Place]) -> Iterator[str]:
+    """Which places of things have no room beside which of others, or beside where these are."""
+    for place in places:
+        near = problem.room.near({place.thing: place.pose}, ROOM_M)
+        for pair in near:
+            for other in pair - {place.thing, place.support}:
+                if place.thing in pair and not _agreed(problem, place, other):
+                    yield _fact("meets", place.thing, place.term, other, ("start", other))
+        for there in places:
+            if _may_meet(problem, place, there) and problem.room.meet(
+                place.thing, place.pose, there.thing, there.pose
+            ):
+                yield _fact("meets", place.thing, place.term, there.thing, there.term)
+
+
+def _agreed(problem: Problem, place: Place, other: str) -> bool:
+    """Whether a recording itself puts the thing beside the other one."""
+    return place.term == ("goal", place.thing) and other in problem.parts
+
+
+def _may_meet(problem: Problem, place: Place, there: Place) -> bool:
+    things = [problem.world.scene.thing(one.thing) for one in (place, there)]
+    apart = np.linalg.norm(place.pose.translation - there.pose.translation)
+    far = sum(float(np.linalg.norm(thing.size)) for thing in things) + ROOM_M
+    return place.thing != there.thing and bool(apart < far)
+
+
+def way_facts(problem: Problem, ways: Sequence[Way], places: Sequence[Place]) -> Iterator[str]:
+    """What recordings can do with either hand and anything that can be moved.
+
+    Args:
+        problem: The world.
+        ways: The recordings.
+        places: Where things may be put.
+    """
+    scene = problem.world.scene
+    for way in ways:
+        name = way.recording.name
+        for number, step in enumerate(way.steps):
+            yield _fact("step", name, number, step.step.action)
+            for relation, (start, end) in way.relations(number).items():
+                yield _fact("before", name, number, relation, int(start))
+                yield _fact("after", name, number, relation, int(end))
+            if way.moves(number):
+                yield _fact("moves", name, number)
+        yield _fact("mirrored", name, OTHER[way.side])
+        for thing in mobile(scene):
+            for side in sorted(OTHER):
+                yield _fact("way", name, side, thing)
+            yield _fact("strange", name, thing, _strangeness(problem, way, scene.thing(thing)))
+        lifts = any(way.relations(number).get("stand") == ("0", "1") for number in _moving(way))
+        for place in places:
+            if place.way == name or (lifts and not place.way):
+                yield _fact("room", name, place.thing, place.term)
+
+
+def _strangeness(problem: Problem, way: Way, thing: Thing) -> int:
+    """How many levels up the hierarchy a thing and the recorded one have a kind in common."""
+    above = problem.kinds(kind_of(way.source.scene.thing(way.part)))
+    own = problem.kinds(kind_of(thing))
+    return next((level for level, kind in enumerate(above) if kind in own), len(above))
+
+
+def _fact(name: str, *arguments: Term) -> str:
+    return f"{text_of((name, *arguments))}."
+
+
+MOST_STEPS = 16
+"""A plan has no more steps than this [1]."""
+
+PROGRAM = "planning/preparing.lp"
+
+Failed = tuple[str, str, str, Term]
+"""A recording, a hand, a thing and a place, or ``any``, that were tried and are not possible."""
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A step of a plan."""
+
+    action: str
+    hand: str
+    thing: str
+    recording: str
+    number: int
+    """Of the step in its recording."""
+
+    place: Spot | None
+    """Where it puts the thing [m]; None where it puts nothing."""
+
+    support: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """Steps that one recording does in a row."""
+
+    way: Way
+    steps: tuple[Planned, ...]
+    term: Term
+    """The place as the solver calls it, or ``any``."""
+
+    touching: frozenset[tuple[str, str]]
+    """Which hands touch what after it, as the plan has it."""
+
+    @property
+    def goal(self) -> Planned | None:
+        """The last step that puts the thing somewhere."""
+        return next((step for step in reversed(self.steps) if step.place is not None), None)
+
+    @property
+    def failed(self) -> Failed:
+        """What is ruled out when it is not possible."""
+        return self.way.recording.name, self.steps[0].hand, self.steps[0].thing, self.term
+
+
+def unmet(problem: Problem) -> tuple[Condition, ...]:
+    """What an action needs and its world lacks."""
+    return _unmet(_solved([*world_facts(problem, ())], 0))
+
+
+def shortest(
+    problem: Problem, ways: Sequence[Way], failed: Iterable[Failed] = ()
+) -> tuple[tuple[Stage, ...], tuple[Condition, ...]]:
+    """The shortest plan that makes true all that is wanted.
+
+    Args:
+        problem: What is wanted.
+        ways: What can be done.
+        failed: What was tried and is not possible.
+
+    Returns:
+        What recordings do, in order, and what no plan makes true; one of them is empty.
+    """
+    places = places_of(problem, ways)
+    facts = [*world_facts(problem, places), *way_facts(problem, ways, places)]
+    facts += [f"{text_of(('failed', *row))}." for row in failed]
+    left = unmet(problem)
+    for steps in range(1, MOST_STEPS + 1) if left else ():
+        try:
+            answer = _solved(facts, steps)
+        except RuleError:
+            continue  # there are no so many steps
+        rest = _unmet(answer)
+        if not rest:
+            return _stages(answer, ways, places), ()
+        left = min(left, rest, key=len)
+    return (), left
+
+
+def why_unmet(problem: Problem, conditions: Sequence[Condition], ways: Sequence[Way]) -> str:
+    """Which conditions do not hold, and what would make them hold."""
+    return "; ".join(_why(problem, condition, ways) for condition in conditions)
+
+
+def _why(problem: Problem, condition: Condition, ways: Sequence[Way]) -> str:
+    scene, said = problem.world.scene, f"{told(condition)} does not hold"
+    known = ", ".join(sorted({way.recording.name for way in ways})) or "none"
+    if condition[0] == "clear":
+        name = condition[1]
+        near = problem.room.near({name: problem.goals[name]}, 0.01)
+        there = sorted({other for pair in near if name in pair for other in pair - {name}})
+        there = [other for other in there if other not in problem.parts]
+        fixed = [other for other in there if scene.thing(other).tag is TagType.FIXED]
+        if fixed:
+            return (
+                f"{said}: {fixed[0]!r} is there and is fixed; another place for {name!r} would do"
+            )
+        return (
+            f"{said}: {', '.join(there)} is there, and no recording puts it elsewhere within reach "
+            f"(tried: {known}); a recording that carries such a thing, or more room, would do"
+        )
+    return (
+        f"{said}, and no recording makes it so (tried: {known}); a recording of one hand that does "
+        "with such a thing, or a scene in which it holds, would do"
+    )
+
+
+def _solved(facts: Sequence[str], steps: int) -> Answer:
+    return best([rule_file(PROGRAM)], "\n".join([*facts, f"horizon({steps})."]))
+
+
+def _unmet(answer: Answer) -> tuple[Condition, ...]:
+    found = (row[0] for row in answer.of("unmet"))
+    return tuple(tuple(map(str, one)) for one in found if isinstance(one, tuple))
+
+
+def _stages(answer: Answer, ways: Sequence[Way], places: Sequence[Place]) -> tuple[Stage, ...]:
+    by_name = {way.recording.name: way for way in ways}
+    by_term = {place.term: place for place in places}
+    brought = {(time, thing): by_term[term] for time, thing, term in answer.of("brings")}
+    rows: list[list[tuple[int, Planned, Term]]] = []
+    for time, name, hand, thing, number in answer.of("does"):
+        assert isinstance(time, int) and isinstance(number, int)
+        place = brought.get((time, thing))
+        step = Planned(
+            by_name[str(name)].steps[number].step.action, str(hand), str(thing), str(name), number,
+            _spot(place), place.support if place else "",
+        )  # fmt: skip
+        row = (time, step, place.term if place else "any")
+        last = rows[-1][-1][1] if rows else None
+        same = last and (last.recording, last.hand, last.thing) == (
+            str(name),
+            str(hand),
+            str(thing),
+        )
+        if last and same and last.number + 1 == number:
+            rows[-1].append(row)
+        else:
+            rows.append([row])
+    return tuple(
+        Stage(
+            by_name[row[0][1].recording],
+            tuple(step for _, step, _ in row),
+            next((term for _, _, term in reversed(row) if term != "any"), "any"),
+            frozenset((str(h), str(t)) for at, h, t in answer.of("touch") if at == row[-1][0]),
+        )
+        for row in rows
+    )
+
+
+def _spot(place: Place | None) -> Spot | None:
+    if place is None:
+        return None
+    x, y, z = (float(value) for value in place.pose.translation)
+    return x, y, z
+
+
+MOST_TRIES = 10
+"""So many stages are found impossible at most before the action is refused [1]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Performed:
+    """A motion, and how good it is."""
+
+    motion: Motion
+    quality: Quality
+    names: dict[str, str]
+    """The scene's names of the things by those that the motion has."""
+
+    effort: EffortReport | None = field(default=None, kw_only=True)
+    """With which manner it was performed, where one was asked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class Done(Performed):
+    """A stage of a plan as it was performed."""
+
+    stage: Stage
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A world that has what an action needs."""
+
+    wanted: tuple[Condition, ...]
+    lacking: tuple[Condition, ...]
+    """What it did not have at the start."""
+
+    done: tuple[Done, ...]
+    world: World
+    tried: tuple[str, ...]
+    """What was planned first and found impossible."""
+
+
+class StageError(PlanError):
+    """A stage of a plan that cannot be performed well.
+
+    Attributes:
+        failed: What is ruled out by that.
+    """
+
+    def __init__(self, stage: Stage, why: str) -> None:
+        self.failed = stage.failed
+        first, place = stage.steps[0], stage.goal
+        where = f" to {place.support!r}" if place else ""
+        super().__init__(
+            f"{first.thing!r}{where} by the {first.hand} hand as in {first.recording!r}: {why}"
+        )
+
+
+def measured_world(source: Source) -> World:
+    """The scene of a recording as it begins, with what its hands touch then.
+
+    Args:
+        source: The recording.
+    """
+    return _world(source.capture, source.observation, source.scene)
+
+
+def captured_world(place: Capture | Path | str) -> World:
+    """The scene of a capture as it begins, with what the hands touch then.
+
+    Args:
+        place: The capture, or where it is described.
+
+    Raises:
+        CaparError: It has a fault, no sensor of the head, or a thing without a shape.
+    """
+    trial = trial_of(place)
+    return _world(trial, observe(trial), captured_scene(trial))
+
+
+def _world(capture: Capture, observation: Observation, scene: Scene) -> World:
+    sides = {s.name: s.side for s in capture.acting if s.end_effector == "hand"}
+    facts = (fact for fact in observation.facts if isinstance(fact, Touch))
+    pairs = ((sides.get(f.body, ""), f.other) for f in facts if f.first == 0)
+    held = {(side, other) for side, other in pairs if side and other in scene.things}
+    return World(scene, frozenset(held))
+
+
+def prepare(
+    instance: Instance, world: World, kinds: Kinds, ways: Callable[[], tuple[Way, ...]]
+) -> Prepared:
+    """Make true what an action needs, by the shortest plan that can be performed well.
+
+    Args:
+        instance: The action.
+        world: As it is measured.
+        kinds: The hierarchy of kinds.
+        ways: Opens the recordings of which a plan can be made; asked only if one is needed.
+
+    Raises:
+        PlanError: No plan makes it true; the message says what does not hold and what would help.
+    """
+    problem = problem_of(instance, world, kinds)
+    lacking = unmet(problem)
+    if not lacking:
+        return Prepared(problem.wanted, (), (), world, ())
+    known, failed, tried = ways(), list[Failed](), list[str]()
+    while len(tried) < MOST_TRIES:
+        stages, left = shortest(problem, known, failed)
+        if left:
+            raise PlanError(_refusal(why_unmet(problem, left, known), tried))
+        try:
+            done, after = _performed(stages, world, instance.asked.human)
+        except StageError as error:
+            failed.append(error.failed)
+            tried.append(str(error))
+            continue
+        still = unmet(problem_of(instance, after, kinds))
+        if still:
+            said = ", ".join(told(condition) for condition in still)
+            raise PlanError(f"by the plan {said} holds, and not by geometry, after all its steps")
+        return Prepared(problem.wanted, lacking, done, after, tuple(tried))
+    raise PlanError(_refusal(why_unmet(problem, lacking, known), tried))
+
+
+def _refusal(why: str, tried: Sequence[str]) -> str:
+    return f"{why}; not possible were: {'; '.join(tried)}" if tried else why
+
+
+def _performed(
+    stages: Sequence[Stage], world: World, human: Human
+) -> tuple[tuple[Done, ...], World]:
+    """All stages in turn; each begins in the world that the one before leaves, as measured."""
+    made: list[Done] = []
+    for stage in stages:
+        _check_before(stage, world)
+        made.append(_stage(stage, world, human))
+        world = _after(made[-1], world)
+    return tuple(made), world
+
+
+def _check_before(stage: Stage, world: World) -> None:
+    """What the first step needs holds by geometry."""
+    step = stage.steps[0]
+    relations = stage.way.relations(step.number)
+    touches = (step.hand, step.thing) in world.touching
+    if relations["touch"][0] != str(int(touches)):
+        verb = "does not touch" if not touches else "touches"
+        raise StageError(stage, f"by geometry the {step.hand} hand {verb} {step.thing!r} before it")
+    stands = bool(world.scene.support(step.thing))
+    if "stand" in relations and relations["stand"][0] != str(int(stands)):
+        verb = "stands on something" if stands else "stands on nothing"
+        raise StageError(stage, f"by geometry {step.thing!r} {verb} before it")
+
+
+def _stage(stage: Stage, world: World, human: Human) -> Done:
+    first, goal, scene = stage.steps[0], stage.goal, world.scene
+    try:
+        source = stage.way.part_of(first.number, stage.steps[-1].number, first.hand)
+        parts = _parts(stage, source, world)
+        source = with_only(source, parts)
+        spots = {first.thing: goal.place} if goal and goal.place else {}
+        made, where = cast(source, replace(scene, spots=spots), parts)
+        if not is_possible(made, where, human):
+            raise StageError(stage, "out of reach")
+        motion, quality = regenerate(made, human, where)
+    except StageError:
+        raise
+    except PlanError as error:
+        raise StageError(stage, str(error)) from error
+    names = own_names(source, scene, parts)
+    gate = contact_gate(motion, [*asserted(made), _planned(stage, made, names)])
+    quality = Quality((*quality.gates, gate), quality.told)
+    if not quality.passed:
+        said = "; ".join(
+            f"{one.name} {one.value:.1f} {one.unit} ({one.bodies})"
+            for one in quality.gates
+            if not one.passed
+        )
+        raise StageError(stage, f"it fails {said}")
+    return Done(motion, quality, names, stage)
+
+
+def _parts(stage: Stage, source: Source, world: World) -> dict[str, str]:
+    """The thing, and what it stands on at both ends, in the parts of the recorded ones."""
+    step, goal = stage.steps[0], stage.goal
+    parts = {stage.way.part: step.thing}
+    first, last = ends_on(source, stage.way.part)
+    beneath = world.scene.support(step.thing)
+    for role, support in ((last, goal.support if goal else beneath), (first, beneath)):
+        if role and support and role not in parts and support not in parts.values():
+            parts[role] = support
+    return parts
+
+
+def _planned(stage: Stage, source: Source, names: dict[str, str]) -> Asserted:
+    """What the plan asserts at the end of a stage."""
+    own = {name: role for role, name in names.items()}
+    step, goal = stage.steps[0], stage.goal
+    touches = (step.hand, step.thing) in stage.touching
+    contacts: list[tuple[Contact, bool]] = [((step.hand, own[step.thing]), touches)]
+    if goal:
+        contacts.append(((own[step.thing], own[goal.support]), True))
+    return Asserted("the plan's stage", len(source.times) - 1, tuple(contacts), "")
+
+
+def _after(done: Done, world: World) -> World:
+    """The world as geometry has it after a stage."""
+    scene = scene_after(done.motion, done.names, world.scene)
+    return World(scene, _touching(done.motion, done.names))
+
+
+def _touching(motion: Motion, names: dict[str, str]) -> Touching:
+    near = Measuring(motion).distances(len(motion.postures) - 1)
+    return frozenset(
+        (side, names[thing])
+        for (side, thing), apart_m in near.items()
+        if side in {"right", "left"} and thing in names and apart_m <= TOUCHES_M
+    )
+
+
+PROGRAM_STANCES = "planning/stepping.lp"
+
+GRID_M = 0.1
+AHEAD, ASIDE = range(-3, 11), range(-5, 6)
+"""The places that are considered, from the given one ahead and to the left [grid steps]."""
+
+FARTHEST_M = GRID_M * AHEAD[-1]
+"""How far ahead it is stepped at most [m]."""
+
+REACH = 0.62
+"""No posture reaches the middle of a thing farther away on the floor [share of stature]
+(estimate)."""
+
+HIGHEST = 1.3
+"""Nor higher above the floor [share of stature] (estimate)."""
+
+MOST_STEPS_STANCES, MOST_TRIES_STANCES = 6, 6
+"""So many places are gone to one after the other at most, and so many are tried of those that are
+as many steps away [1]."""
+
+MOST_TOLD = 3
+"""So many of them are told where none helps [1]."""
+
+Made = TypeVar("Made")
+Spot_stances = tuple[int, int]
+"""Of the grid: ahead and to the left."""
+
+
+@dataclass(frozen=True, eq=False)
+class Approach:
+    """Steps that prepare an action."""
+
+    why: str
+    """Why they are needed."""
+
+    steps: Stepping
+    quality: Quality
+    ahead_m: float
+    aside_m: float
+    """How far ahead and to the left they lead."""
+
+    tried: tuple[str, ...]
+    """Other places, and why the action is not possible there."""
+
+
+def approached(
+    source: Source,
+    human: Human,
+    scene: Scene,
+    style: Style,
+    act: Callable[[Scene], tuple[Made, Quality]],
+) -> tuple[Approach | None, Made, Quality]:
+    """Perform an action where it can be done, after as few steps there as the solver finds.
+
+    Args:
+        source: The recorded performance.
+        human: Who performs.
+        scene: Where, and where the performer stands at first.
+        style: How it is done.
+        act: Performs it in a scene; raises PlanError where that is not possible.
+
+    Returns:
+        The steps, None where none is needed; what was performed, and how good it is.
+
+    Raises:
+        PlanError: The performer stands in something, or it is out of reach and no step helps.
+    """
+    check_stance(scene, human)
+    why = _beyond(source, human, scene) or why_unreachable(source, scene, human, style)
+    if why is None:
+        return None, *act(replace(scene, stays=True))
+    spots = {spot: beside(scene, *_metres(spot)) for spot in _free_spots(scene, human)}
+    facts, failed = list(_facts(source, human, scene, spots)), dict[Spot_stances, str]()
+    for steps in range(1, MOST_STEPS_STANCES + 1):
+        for _ in range(MOST_TRIES_STANCES):
+            way = _way_stances(facts, failed, steps)
+            if not way:
+                break
+            found = _tried(source, human, scene, [spots[spot] for spot in way], act)
+            if isinstance(found, str):
+                failed[way[-1]] = found
+                continue
+            made, quality, walked, walked_quality = found
+            tried = tuple(_told(spot, said) for spot, said in failed.items())
+            approach = Approach(why, walked, walked_quality, *_metres(way[-1]), tried)
+            return approach, made, quality
+    said = [_told(spot, reason) for spot, reason in failed.items()]
+    raise PlanError(
+        f"{why}; no step helps of {len(failed)} places that were tried "
+        f"({'; '.join(said[:MOST_TOLD])}{'; and so on' if len(said) > MOST_TOLD else ''})"
+        if failed
+        else f"{why}; no step helps, since nothing nearer is free or it is too high"
+    )
+
+
+def _tried(
+    source: Source,
+    human: Human,
+    scene: Scene,
+    way: Sequence[Scene],
+    act: Callable[[Scene], tuple[Made, Quality]],
+) -> tuple[Made, Quality, Stepping, Quality] | str:
+    """Steps by some places and the action at the last, or why that is not possible."""
+    if not is_possible(source, replace(way[-1], stays=True), human):
+        return "out of reach"
+    walked = step_to(human, scene, *(there.place for there in way), rate_hz=source.rate_hz)
+    walked_quality = stepping_quality(walked)
+    if not walked_quality.passed:
+        return f"the steps there fail {_failed(walked_quality)}"
+    try:
+        made, quality = act(walked.after)
+    except PlanError as error:
+        return str(error)
+    if not quality.passed:
+        return f"it fails {_failed(quality)}"
+    return made, quality, walked, walked_quality
+
+
+def _failed(quality: Quality) -> str:
+    rows = (gate for gate in quality.gates if not gate.passed)
+    return ", ".join(f"{gate.name} {gate.value:.1f} {gate.unit} ({gate.bodies})" for gate in rows)
+
+
+def _told(spot: Spot_stances, why: str) -> str:
+    ahead_m, aside_m = _metres(spot)
+    return f"{ahead_m:+.1f} m ahead and {aside_m:+.1f} m to the left: {why}"
+
+
+def _metres(spot: Spot_stances) -> tuple[float, float]:
+    return GRID_M * spot[0], GRID_M * spot[1]
+
+
+def _free_spots(scene: Scene, human: Human) -> Iterator[Spot_stances]:
+    """Where somebody at ease stands in nothing; the first place is always one."""
+    around = Surroundings(human, scene)
+    posture = Solver(human, (*scene.place, scene.floor_m), scene.heading).rest
+    things = {name: thing.pose for name, thing in scene.things.items()}
+    for spot in ((ahead, aside) for ahead in AHEAD for aside in ASIDE):
+        there = posture.copy()
+        there[:2] += np.subtract(beside(scene, *_metres(spot)).place, scene.place)
+        around.pose(there, things)
+        if spot == (0, 0) or all(pair.distance_m >= 0.0 for pair in around.near()):
+            yield spot
+
+
+def _facts(
+    source: Source, human: Human, scene: Scene, spots: dict[Spot_stances, Scene]
+) -> Iterator[str]:
+    names = {_name(spot): spot for spot in spots}
+    wish = _wish(source, human, scene)
+    yield f"at_first({_name((0, 0))})."
+    for name, spot in names.items():
+        place = np.asarray(spots[spot].place)
+        yield f"stance({name})."
+        yield f"amiss({name},{round(1e3 * float(np.linalg.norm(place - wish)))})."
+        if not _beyond(source, human, spots[spot]):
+            yield f"useful({name})."
+        for other, there in names.items():
+            apart = GRID_M * float(np.hypot(there[0] - spot[0], there[1] - spot[1]))
+            if other != name and apart <= STRIDE * human.measures["stature"]:
+                yield f"within_step({name},{other})."
+
+
+def _beyond(source: Source, human: Human, scene: Scene) -> str:
+    """What is handled farther away or higher than any posture reaches, in words; empty if none."""
+    tall = human.measures["stature"]
+    for name in dict.fromkeys(hold.thing for hold in source.holds):
+        place = np.asarray(scene.thing(name).place)
+        far_m = float(np.linalg.norm(place[:2] - scene.place))
+        high_m = float(place[2]) - scene.floor_m
+        if far_m > REACH * tall:
+            more_m = far_m - REACH * tall
+            return (
+                f"{name!r} is {far_m:.1f} m away, {more_m:.1f} m farther than any posture reaches"
+            )
+        if high_m > HIGHEST * tall:
+            return f"{name!r} is {high_m:.1f} m above the floor, higher than any posture reaches"
+    return ""
+
+
+def _wish(source: Source, human: Human, scene: Scene) -> Float[np.ndarray, "2"]:
+    """Where the performer would stand by the things as the recorded one did, by stature [m]."""
+    names = [hold.thing for hold in source.holds]
+    old, new = (
+        np.mean([one.thing(name).place for name in names], axis=0)[:2]
+        for one in (source.scene, scene)
+    )
+    turn = scene.heading - source.scene.heading
+    away = (old - source.scene.place) * human.measures["stature"] / source.human.measures["stature"]
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    return np.asarray(new - rotation @ away)
+
+
+def _way_stances(
+    facts: list[str], failed: dict[Spot_stances, str], steps: int
+) -> list[Spot_stances]:
+    """The best places one after the other; none where so many steps lead to no useful one."""
+    known = [f"failed({_name(spot)})." for spot in failed]
+    try:
+        answer: Answer = best(
+            [rule_file(PROGRAM_STANCES)], "\n".join([*facts, *known, f"horizon({steps})."])
+        )
+    except RuleError:
+        return []
+    rows = sorted(answer.of("stands"), key=lambda row: int(str(row[0])))
+    return [_spot_stances(row[1]) for row in rows[1:]]
+
+
+def _name(spot: Spot_stances) -> str:
+    return f"spot({spot[0]},{spot[1]})"
+
+
+def _spot_stances(term: object) -> Spot_stances:
+    assert isinstance(term, tuple)
+    return int(term[1]), int(term[2])

@@ -1,0 +1,738 @@
+"""Efforts: four parameters of manner, how they reshape paths, and how they are measured."""
+
+import itertools
+import tomllib
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from importlib import resources
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import brentq, least_squares
+from scipy.spatial.transform import RigidTransform, Rotation, Slerp
+
+from capar.body.human import Human
+from capar.model.errors import CaparError, UnknownNameError
+from capar.regeneration.body_frames import body_frames
+from capar.regeneration.goals import thing_goals
+from capar.regeneration.motion import Motion
+from capar.regeneration.paths import Care
+from capar.regeneration.planning import Draft, Plan, led
+from capar.regeneration.quality import Quality, performed_hands
+from capar.regeneration.scenes import PlanError, Scene
+from capar.regeneration.search import regenerate
+from capar.regeneration.sources import Source
+from capar.regeneration.styles import SHORT_M, Kind, Style, arc_shares, own_style, paced, retimed
+
+POLES = {
+    "time": ("sustained", "sudden"),
+    "weight": ("light", "strong"),
+    "space": ("indirect", "direct"),
+    "flow": ("free", "bound"),
+}
+"""The pole at -1 and the one at +1 of each parameter."""
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How something is done, compared with how it was recorded: 0 is as recorded.
+
+    D. Chi, M. Costa, L. Zhao and N. Badler, The EMOTE model for effort and shape (SIGGRAPH 2000).
+    """
+
+    time: float = 0.0
+    """From sustained (-1) to sudden (1)."""
+
+    weight: float = 0.0
+    """From light (-1) to strong (1)."""
+
+    space: float = 0.0
+    """From indirect (-1) to direct (1)."""
+
+    flow: float = 0.0
+    """From free (-1) to bound (1)."""
+
+    def __post_init__(self) -> None:
+        """Check that every parameter is between its poles.
+
+        Raises:
+            CaparError: One is not.
+        """
+        for name, value in self.values.items():
+            if not -1.0 <= value <= 1.0:
+                low, high = POLES[name]
+                raise CaparError(
+                    f"effort {name} = {value:g}; it is from -1 ({low}) to 1 ({high}), 0 being as "
+                    "recorded"
+                )
+
+    @property
+    def values(self) -> dict[str, float]:
+        """By parameter."""
+        return {field.name: float(getattr(self, field.name)) for field in fields(self)}
+
+    def scaled(self, share: float) -> "Effort":
+        """The same manner, less of it."""
+        return Effort(**{name: share * value for name, value in self.values.items()})
+
+    def __str__(self) -> str:
+        """The parameters, as a user would state them."""
+        return ", ".join(f"{name} {value:+.2f}" for name, value in self.values.items())
+
+
+def read_effort(text: str) -> Effort:
+    """An effort from ``time=0.6,weight=-0.3`` or the names of poles, ``sudden=0.6,light=0.3``.
+
+    Raises:
+        UnknownNameError: There is no such parameter or pole.
+        CaparError: A value is no number or beyond a pole, or a parameter is stated twice.
+    """
+    out, stated = Effort(), set()
+    for part in filter(None, (item.strip() for item in text.split(","))):
+        name, _, said = (word.strip() for word in part.partition("="))
+        parameter, sign = _parameter(name.lower())
+        try:
+            value = sign * float(said)
+        except ValueError:
+            raise CaparError(
+                f"--effort {part!r}: {name} needs a number from -1 to 1, as in {name}=0.5"
+            ) from None
+        if parameter in stated:
+            raise CaparError(f"--effort states {parameter} twice; state it once")
+        stated.add(parameter)
+        out = replace(out, **{parameter: value})
+    if not stated:
+        raise CaparError("--effort states nothing; as in --effort time=0.6,weight=-0.3")
+    return out
+
+
+def _parameter(name: str) -> tuple[str, float]:
+    """The parameter of that name, and the sign of the pole if one was named."""
+    for parameter, (low, high) in POLES.items():
+        signs = {parameter: 1.0, low: -1.0, high: 1.0}
+        if name in signs:
+            return parameter, signs[name]
+    known = [word for parameter, poles in POLES.items() for word in (parameter, *poles)]
+    raise UnknownNameError("effort", name, known)
+
+
+@cache
+def adverbs() -> dict[str, Effort]:
+    """The effort of each adverb of the table ``adverbs.toml``."""
+    text = resources.files(__package__).joinpath("adverbs.toml").read_text("utf-8")
+    return {word: Effort(**row) for word, row in tomllib.loads(text).items()}
+
+
+def effort_of_words(words: Iterable[str]) -> Effort | None:
+    """The effort that some words ask for together, no further than to a pole; None if none does.
+
+    Args:
+        words: Adverbs; those that are not in the table ask for none.
+    """
+    found = [adverbs()[word] for word in words if word in adverbs()]
+    if not found:
+        return None
+    sums = {name: sum(effort.values[name] for effort in found) for name in Effort().values}
+    return Effort(**{name: max(-1.0, min(1.0, value)) for name, value in sums.items()})
+
+
+def told_of_words(words: Iterable[str], *, stated: bool) -> list[str]:
+    """What is told of the effect of some words.
+
+    Args:
+        words: Adverbs and others that name no action, thing or place.
+        stated: Whether an effort is stated besides, which is then taken.
+    """
+    out = []
+    for word in words:
+        if word not in adverbs():
+            out.append(f"{word!r} has no effect")
+        elif stated:
+            out.append(f"{word!r} has no effect, since an effort is stated")
+        else:
+            out.append(f"{word!r} asks for the effort {adverbs()[word]}")
+    return out
+
+
+SLOW = 0.05
+"""Speeds below this share of the highest one are scaled alike, so that noise is not raised [1]."""
+
+SKEW = 1.5
+"""Weight tilts the speeds by this power of e from the first frame to the last one [1]."""
+
+PAUSE = 0.12
+"""Bound flow pauses for so long at an end of a stretch [1, of its time]."""
+
+OVERSHOOT, SETTLES = 0.08, 0.3
+"""Free flow goes so far beyond a free end [1, of the way] and needs so long for it [1, of time]."""
+
+BULGE, LIFT = 0.15, 0.08
+"""Indirect space leads so far aside, light weight so high half-way [1, of the straight way]."""
+
+WIDER = 0.5
+"""Indirect space enlarges by so much what deviates from the straight way already [1]."""
+
+
+def timed(
+    shares: Float[np.ndarray, "frames"], time: float, weight: float
+) -> Float[np.ndarray, "frames"]:
+    """Shares of the way, from 0 to 1, with the speeds of another effort.
+
+    Speeds are raised to the power 2^time, so that the highest over the mean grows with time
+    (sudden), and tilted by exp(SKEW * weight) towards the end, so that weight (strong) goes on
+    accelerating for longer and light weight eases in.
+
+    Args:
+        shares: Of the way, as recorded, not decreasing.
+        time: From sustained to sudden.
+        weight: From light to strong.
+    """
+    speeds = np.diff(shares)
+    peak = float(speeds.max())
+    middle = (np.arange(len(speeds)) + 0.5) / len(speeds)
+    rate = np.maximum(speeds / peak, SLOW) ** (2.0**time - 1.0)
+    rate = rate * np.exp(SKEW * weight * (middle - 0.5))
+    covered = np.concatenate([[0.0], np.cumsum(speeds * rate)])
+    return np.asarray(covered / covered[-1])
+
+
+def paused(
+    shares: Float[np.ndarray, "frames"], flow: float, ends: tuple[bool, bool]
+) -> Float[np.ndarray, "frames"]:
+    """Shares of the way with the pauses of bound flow.
+
+    Args:
+        shares: Of the way.
+        flow: Bound where above 0; nothing is changed below.
+        ends: Whether it may pause at the start and at the end.
+    """
+    before, after = (PAUSE * max(flow, 0.0) * may for may in ends)
+    time = np.linspace(0.0, 1.0, len(shares))
+    inner = np.clip((time - before) / (1.0 - before - after), 0.0, 1.0)
+    return np.interp(inner, time, shares)
+
+
+def overshot(frames: int, flow: float) -> tuple[Float[np.ndarray, "frames"], ...]:
+    """When the way is gone, and what is gone beyond its end, with free flow.
+
+    Args:
+        frames: How many.
+        flow: Free where below 0; nothing is changed above.
+
+    Returns:
+        The share of the recorded time at each frame, and the added share of the way.
+    """
+    free = max(-flow, 0.0)
+    time = np.linspace(0.0, 1.0, frames)
+    arrival = 1.0 - SETTLES * free
+    gone = np.minimum(time / arrival, 1.0)
+    late = np.clip((time - arrival + SETTLES * free) / (2.0 * SETTLES * max(free, 1e-9)), 0.0, 1.0)
+    return gone, OVERSHOOT * free * np.sin(np.pi * late) ** 2
+
+
+def shaped(
+    spots: Float[np.ndarray, "frames 3"],
+    space: float,
+    weight: float,
+    free: Float[np.ndarray, "frames"],
+) -> Float[np.ndarray, "frames 3"]:
+    """A way between the same ends, more or less direct, higher or lower.
+
+    Direct space takes what deviates from the straight way out of it. Indirect space enlarges that
+    and bulges aside: to the side on which the way becomes longer, so that, a length being convex
+    in what is added, more indirect is never shorter.
+
+    Args:
+        spots: The way [m].
+        space: From indirect to direct.
+        weight: From light to strong.
+        free: How far each frame may be moved [1].
+    """
+    chord = spots[-1] - spots[0]
+    length = float(np.linalg.norm(chord))
+    along = (spots - spots[0]) @ chord / length**2
+    straight = spots[0] + np.outer(along, chord)
+    aside = spots - straight
+    steps = np.linalg.norm(np.diff(spots, axis=0), axis=1)
+    share = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+    bump = 16.0 * share**2 * (1.0 - share) ** 2
+    out = -max(space, 0.0) * aside
+    if space < 0.0:
+        wider = WIDER * aside + length * BULGE * np.outer(bump, _sideways(chord))
+        other = WIDER * aside - length * BULGE * np.outer(bump, _sideways(chord))
+        added = wider if _lengthens(spots, wider) >= _lengthens(spots, other) else other
+        out = -space * added
+    out = out - weight * LIFT * length * np.outer(bump, [0.0, 0.0, 1.0])
+    return np.asarray(spots + free[:, None] * out)
+
+
+def _sideways(chord: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+    """Level and across a way; to the left of x where that goes straight up."""
+    across = np.array([-chord[1], chord[0], 0.0])
+    size = float(np.linalg.norm(across))
+    return np.asarray(across / size) if size > 1e-9 else np.array([0.0, 1.0, 0.0])
+
+
+def _lengthens(spots: Float[np.ndarray, "frames 3"], added: Float[np.ndarray, "frames 3"]) -> float:
+    """How fast a way becomes longer as something is added to it [m]."""
+    steps, more = np.diff(spots, axis=0), np.diff(added, axis=0)
+    sizes = np.maximum(np.linalg.norm(steps, axis=1), 1e-12)
+    return float(np.sum(np.einsum("ij,ij->i", steps, more) / sizes))
+
+
+ARM_M = 0.1
+"""A turn of one radian counts as so long a way [m]."""
+
+SLOWLY = 0.1
+"""Where a hand is slower than this share of its highest speed a step's border parts its way [1]."""
+
+OFF_M = 0.05
+"""A thing that is so far above where it is taken and put down may go another way [m]."""
+
+ROUND_S = 0.15
+"""Free flow rounds the way over so long on both sides of a border between steps [s]."""
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A part of a way between two events, or between slow borders of steps."""
+
+    first: int
+    last: int
+    pauses: tuple[bool, bool] = (True, True)
+    """Whether it may be paused at its start and at its end: nothing is let go or taken there."""
+
+    ends_free: bool = False
+    """Whether nothing is held in its last frame, nor taken then."""
+
+
+def with_effort(style: Style, source: Source, effort: Effort) -> Style:
+    """The style with another effort; events keep their frames and places.
+
+    Between events the speeds along each way are reshaped by time, weight and bound flow, and the
+    shape of ways in free air by space, weight and free flow. How long everything takes is not
+    changed here.
+
+    Args:
+        style: As it was recorded or borrowed.
+        source: What is done.
+        effort: How, compared with the style.
+    """
+    hands, things = dict(style.hands), dict(style.things)
+    for side, path in style.hands.items():
+        edges = hand_edges(source, side)
+        rounded = _rounded(path, source, edges, effort.flow)
+        for stretch in hand_stretches(source, side):
+            part = rounded[stretch.first : stretch.last + 1]
+            rounded = _replaced(rounded, stretch.first, _reshaped(part, stretch, effort))
+        hands[side] = rounded
+    recorded = body_frames(source.human, source.scene)
+    for name, goals in thing_goals(source, source.scene, recorded, recorded).items():
+        frames = sorted({goal.frame for goal in goals})
+        free = _off_ground(style.things[name], frames[0], frames[-1])
+        path = _rounded(style.things[name], source, frames, effort.flow)
+        sides = {hold.side for hold in source.holds if hold.thing == name}
+        borders = {border for side in sides for border in _borders(source, side)}
+        edges = sorted({*frames, *(b for b in borders if frames[0] < b < frames[-1])})
+        for first, last in itertools.pairwise(edges):
+            part = path[first : last + 1]
+            made = _reshaped(part, Stretch(first, last), effort, free[first : last + 1])
+            path = _replaced(path, first, made)
+        things[name] = path
+    return replace(style, hands=hands, things=things)
+
+
+def hand_edges(source: Source, side: str) -> list[int]:
+    """Frames at which a hand takes something or lets it go, and the first and last of all."""
+    holds = [hold for hold in source.holds if hold.side == side]
+    frames = {frame for hold in holds for frame in (hold.first, hold.last)}
+    return sorted({0, len(source.times) - 1, *frames})
+
+
+def hand_stretches(source: Source, side: str) -> Iterator[Stretch]:
+    """The stretches in which a hand holds nothing, in order."""
+    holds = [hold for hold in source.holds if hold.side == side]
+    firsts, lasts = {hold.first for hold in holds}, {hold.last for hold in holds}
+    edges = sorted({*hand_edges(source, side), *_borders(source, side)})
+    for first, last in itertools.pairwise(edges):
+        if not any(hold.first <= first and last <= hold.last for hold in holds):
+            pauses = first not in lasts, last not in firsts
+            later = any(hold.first >= last for hold in holds)
+            yield Stretch(first, last, pauses, not later)
+
+
+def _borders(source: Source, side: str) -> list[int]:
+    """Frames between steps of a hand at which it is slow."""
+    hand = source.hands[side]
+    steps = np.linalg.norm(np.diff(hand.path.translation, axis=0), axis=1)
+    slow = SLOWLY * float(steps.max())
+    ends = {part.last for part in source.observation.segments if part.ee == hand.sensor}
+    return sorted(frame for frame in ends if 0 < frame < len(steps) and steps[frame - 1] < slow)
+
+
+def turned_way(path: RigidTransform) -> Float[np.ndarray, "frames"]:
+    """Length of a way up to each frame, turning included [m], strictly increasing."""
+    gone = np.linalg.norm(np.diff(path.translation, axis=0), axis=1)
+    turned = (path[1:].rotation * path[:-1].rotation.inv()).magnitude()
+    return np.concatenate([[0.0], np.cumsum(np.hypot(gone, ARM_M * turned) + 1e-9)])
+
+
+def _reshaped(
+    path: RigidTransform,
+    stretch: Stretch,
+    effort: Effort,
+    free: Float[np.ndarray, "frames"] | None = None,
+) -> RigidTransform:
+    """A stretch with another effort; as it is where it is too short to have one."""
+    length = turned_way(path)
+    if length[-1] < SHORT_M or len(path) < 4:
+        return path
+    frames = np.arange(len(path), dtype=float)
+    shares = timed(length / length[-1], effort.time, effort.weight)
+    shares = paused(shares, effort.flow, stretch.pauses)
+    chord = path.translation[-1] - path.translation[0]
+    far = float(np.linalg.norm(chord)) >= SHORT_M
+    beyond = np.zeros(len(path))
+    if stretch.ends_free and far:
+        gone, beyond = overshot(len(path), effort.flow)
+        shares = np.interp(gone, frames / frames[-1], shares)
+    at = np.interp(shares, length / length[-1], frames)
+    spots = np.stack([np.interp(at, frames, column) for column in path.translation.T], axis=1)
+    turns: Rotation = Slerp(frames, path.rotation)(at)
+    if far:
+        free = np.ones(len(path)) if free is None else np.interp(at, frames, free)
+        covered = arc_shares(spots)
+        spots = retimed(shaped(spots, effort.space, effort.weight, free), covered)
+        spots = spots + np.outer(beyond, chord)
+    return RigidTransform.from_components(spots, turns)
+
+
+def _rounded(
+    path: RigidTransform, source: Source, pinned: Collection[int], flow: float
+) -> RigidTransform:
+    """A way that flows through the borders between steps where nothing has to be anywhere."""
+    half = round(ROUND_S * source.rate_hz * max(-flow, 0.0))
+    if half < 1 or len(path) < 4:
+        return path
+    window = np.hanning(2 * half + 3)[1:-1]
+    padded = np.pad(path.translation, ((half, half), (0, 0)), mode="edge")
+    smooth = np.stack(
+        [np.convolve(column, window / window.sum(), mode="valid") for column in padded.T], axis=1
+    )
+    near = np.min([np.abs(np.arange(len(path)) - frame) for frame in pinned], axis=0)
+    inside = (np.arange(len(path)) >= min(pinned)) & (np.arange(len(path)) <= max(pinned))
+    share = np.clip(near / (4.0 * half), 0.0, 1.0) * inside
+    share = share**2 * (3.0 - 2.0 * share)
+    spots = path.translation + share[:, None] * (smooth - path.translation)
+    return RigidTransform.from_components(spots, path.rotation)
+
+
+def _off_ground(path: RigidTransform, first: int, last: int) -> Float[np.ndarray, "frames"]:
+    """How far a thing may go another way at each frame [1]: not while it is on what bears it."""
+    heights = path.translation[:, 2]
+    rise = np.clip((heights - max(heights[first], heights[last])) / OFF_M - 0.2, 0.0, 1.0)
+    return np.asarray(rise**2 * (3.0 - 2.0 * rise))
+
+
+def _replaced(path: RigidTransform, first: int, part: RigidTransform) -> RigidTransform:
+    """The path with another part from a frame on."""
+    after = first + len(part)
+    pieces = [path[:first], part, path[after:]]
+    return RigidTransform.concatenate([piece for piece in pieces if len(piece)])
+
+
+WORTH_M = 0.1
+"""Shorter ways tell no effort [m]."""
+
+FREE = 0.05
+"""Bound flow that is less cannot be told from free flow where no way ends free [1]."""
+
+MOST = 1.5
+"""How far beyond the poles an effort is measured [1]."""
+
+
+@dataclass(frozen=True)
+class MeasuredEffort:
+    """Parameters that can be measured in a performed motion; None for those that cannot."""
+
+    time: float | None
+    weight: float | None
+    space: float | None
+    flow: float | None
+
+    @property
+    def values(self) -> dict[str, float | None]:
+        """By parameter."""
+        return {"time": self.time, "weight": self.weight, "space": self.space, "flow": self.flow}
+
+    def __str__(self) -> str:
+        """For people."""
+        return ", ".join(
+            f"{name} {value:+.2f}" if value is not None else f"{name} not measured"
+            for name, value in self.values.items()
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Pair:
+    """A stretch of a hand's way as planned without an effort, and as it was performed."""
+
+    stretch: Stretch
+    old: RigidTransform
+    new: RigidTransform
+    other_detour: bool
+    """Whether they are led around things otherwise."""
+
+
+def measured_effort(motion: Motion, style: Style) -> MeasuredEffort:
+    """Fit the profiles of an effort to the ways of the performed hands.
+
+    They are compared with what the same body would do in the same scene without an effort. Time,
+    weight and bound flow are those with which the share of each free way that is covered comes
+    nearest to the performed one, by least squares; the last free ways, which free flow overshoots,
+    are left out. Free flow is told by how far a hand goes beyond the end of these. Space is the one
+    with which the ways become as much longer than straight as the performed ones are; ways that
+    are led around something otherwise than without an effort are left out.
+
+    Args:
+        motion: What was performed.
+        style: How it was recorded, without an effort.
+    """
+    pairs = list(_pairs(motion, style))
+    inner = [pair for pair in pairs if not pair.stretch.ends_free]
+    last = [pair for pair in pairs if pair.stretch.ends_free and _chord_m(pair.new) >= WORTH_M]
+    time = weight = bound = None
+    if inner:
+        time, weight, bound = _timing(inner)
+    beyond = [_beyond(pair.new) - _beyond(pair.old) for pair in last]
+    flow = bound if last or (bound or 0.0) > FREE else None
+    if beyond and max(beyond) > 0.1 * OVERSHOOT:
+        flow = -float(np.mean(beyond)) / OVERSHOOT
+    straight = [pair for pair in inner if not pair.other_detour and _chord_m(pair.old) >= WORTH_M]
+    return MeasuredEffort(time, weight, _space(straight, weight or 0.0), flow)
+
+
+def _pairs(motion: Motion, style: Style) -> Iterator[_Pair]:
+    plan, usual = motion.plan, _without_effort(motion, style)
+    for side, new in performed_hands(motion).items():
+        turns = [frame for hand, frame in {*plan.detours, *usual.detours} if hand == side]
+        other = [f for f in turns if plan.detours.get((side, f)) != usual.detours.get((side, f))]
+        edges = hand_edges(plan.source, side)
+        for stretch in hand_stretches(plan.source, side):
+            part = slice(stretch.first, stretch.last + 1)
+            old, start = usual.hands[side][part], max(e for e in edges if e <= stretch.first)
+            if turned_way(old)[-1] >= WORTH_M and len(old) > 4:
+                yield _Pair(stretch, old, new[part], start in other)
+
+
+def _without_effort(motion: Motion, style: Style) -> Plan:
+    """What the same body would do in the same scene with the same grips."""
+    plan = motion.plan
+    draft = Draft(plan.source, plan.scene, plan.human, style)
+    draft.grips = plan.grips
+    return led(draft, Care())
+
+
+def _timing(pairs: list[_Pair]) -> tuple[float, float, float]:
+    """Time, weight and bound flow by least squares on the shares of the way."""
+
+    def off(values: Float[np.ndarray, "3"]) -> Float[np.ndarray, "rows"]:
+        rows = []
+        for pair in pairs:
+            shares = timed(_shares(pair.old), values[0], values[1])
+            rows.append(paused(shares, values[2], pair.stretch.pauses) - _shares(pair.new))
+        return np.concatenate(rows)
+
+    low, high = [-MOST, -MOST, -1e-9], [MOST, MOST, MOST]
+    found = least_squares(off, [0.0, 0.0, 0.05], bounds=(low, high), diff_step=1e-4)
+    time, weight, bound = (float(value) for value in found.x)
+    return time, weight, bound
+
+
+def _space(pairs: list[_Pair], weight: float) -> float | None:
+    """The effort of space by the mean of how much longer than straight ways are."""
+    if not pairs:
+        return None
+    wanted = np.mean([_detour(pair.new.translation) for pair in pairs])
+
+    def off(space: float) -> float:
+        made = []
+        for pair in pairs:
+            free = np.ones(len(pair.old))
+            made.append(_detour(shaped(pair.old.translation, space, weight, free)))
+        return float(np.mean(made) - wanted)
+
+    low, high = off(-MOST), off(1.0)
+    if low <= 0.0 or high >= 0.0:
+        return -MOST if low <= 0.0 else 1.0
+    return float(brentq(off, -MOST, 1.0, xtol=1e-3))
+
+
+def _shares(path: RigidTransform) -> Float[np.ndarray, "frames"]:
+    length = turned_way(path)
+    return np.asarray(length / length[-1])
+
+
+def _detour(spots: Float[np.ndarray, "frames 3"]) -> float:
+    """How much longer than straight a way is [1]."""
+    length = float(np.linalg.norm(np.diff(spots, axis=0), axis=1).sum())
+    return length / float(np.linalg.norm(spots[-1] - spots[0])) - 1.0
+
+
+def _beyond(path: RigidTransform) -> float:
+    """How far a way goes beyond its end, along the straight way [1, of that]."""
+    chord = path.translation[-1] - path.translation[0]
+    along = (path.translation - path.translation[0]) @ chord / float(chord @ chord)
+    return float(along.max() - 1.0)
+
+
+def _chord_m(path: RigidTransform) -> float:
+    return float(np.linalg.norm(path.translation[-1] - path.translation[0]))
+
+
+SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)
+"""Shares of the effort that are tried [1]."""
+
+DOUBLINGS = 0.5
+"""A sudden performance is so many times halved in its time, a sustained one doubled [1]."""
+
+
+@dataclass(frozen=True)
+class EffortReport:
+    """What effort was asked for, performed, and measured in the performed motion."""
+
+    asked: Effort
+    performed: Effort
+    measured: MeasuredEffort
+    why: str = ""
+    """What did not allow more."""
+
+    def __str__(self) -> str:
+        """For people, in a line or two."""
+        lines = [f"effort asked for: {self.asked}"]
+        if self.why:
+            share = _share(self.performed, self.asked)
+            lines.append(
+                f"effort performed: {self.performed}, {share:.2f} of it, since with more {self.why}"
+            )
+        return "\n".join([*lines, f"effort measured: {self.measured}"])
+
+
+def regenerate_with_effort(
+    source: Source,
+    human: Human,
+    scene: Scene | None = None,
+    style: Style | None = None,
+    *,
+    effort: Effort,
+    duration_s: float | None = None,
+) -> tuple[Motion, Quality, EffortReport]:
+    """Perform with an effort, or with the largest share of it that passes every gate.
+
+    Args:
+        source: The recorded performance.
+        human: Who performs.
+        scene: Where; as it was recorded, unless stated.
+        style: How it is done without the effort; as it was recorded, unless stated.
+        effort: How it is to be done.
+        duration_s: How long it takes [s]; by the effort of time, unless stated.
+
+    Raises:
+        PlanError: It is impossible without any effort, too, or an effort has no meaning there.
+    """
+    style = style or own_style(source)
+    check_effort(source, style, effort)
+    found: list[tuple[Motion, Quality, float]] = []
+    reasons: list[str] = []
+    refused: PlanError | None = None
+    for share in SHARES:
+        part = effort.scaled(share)
+        try:
+            timed = paced(source, duration_s or _duration_s(source, part))
+            motion, quality = regenerate(timed, human, scene, with_effort(style, timed, part))
+        except PlanError as error:
+            refused = error
+            reasons.append(str(error))
+            continue
+        found.append((motion, quality, share))
+        if quality.passed:
+            break
+        gates = [gate for gate in quality.gates if not gate.passed]
+        reasons.append(
+            ", ".join(f"{g.name} is {g.value:.2f} {g.unit}, limit {g.limit:g}" for g in gates)
+        )
+    if not found:
+        assert refused is not None
+        raise refused
+    motion, quality, share = min(found, key=lambda made: (len(made[1].failed), -made[2]))
+    why = reasons[SHARES.index(share) - 1] if share < 1.0 else ""
+    report = EffortReport(effort, effort.scaled(share), measured_effort(motion, style), why)
+    return motion, quality, report
+
+
+def regenerate_in_manner(
+    source: Source,
+    human: Human,
+    scene: Scene,
+    style: Style,
+    *,
+    effort: Effort | None,
+    duration_s: float | None,
+) -> tuple[Motion, Quality, EffortReport | None]:
+    """Perform with an effort if one is stated, and in a certain time if that is.
+
+    Args:
+        source: The recorded performance.
+        human: Who performs.
+        scene: Where.
+        style: How it is done without the effort.
+        effort: How it is to be done.
+        duration_s: How long it takes [s].
+
+    Raises:
+        PlanError: It is impossible; the message says what would help.
+    """
+    if effort:
+        return regenerate_with_effort(
+            source, human, scene, style, effort=effort, duration_s=duration_s
+        )
+    source = paced(source, duration_s) if duration_s else source
+    return *regenerate(source, human, scene, style), None
+
+
+def check_effort(source: Source, style: Style, effort: Effort) -> None:
+    """Whether an effort can have its effect there.
+
+    Raises:
+        PlanError: It cannot; the message says what would do.
+    """
+    set_going = [(launch.frame, launch.thing) for launch in source.launches]
+    set_going += [(toss.first, toss.thing) for toss in source.tosses]
+    if set_going:
+        frame, thing = min(set_going)
+        raise PlanError(
+            f"an effort would change the speed at which {thing!r} is struck or let go at "
+            f"{source.times[frame]:.2f} s; --force says what is kept of that: leave out "
+            "--effort, or the adverb"
+        )
+    if style.kind is Kind.EVEN:
+        raise PlanError(
+            "style 'even' has its own speeds and straight ways, on which an effort has no effect; "
+            "--style path or frame would do"
+        )
+    if style.kind is Kind.VEL and effort.space:
+        raise PlanError(
+            "style 'vel' goes straight, so that space has no effect; --style path or frame would do"
+        )
+
+
+def _duration_s(source: Source, effort: Effort) -> float:
+    """How long it takes with an effort [s]."""
+    recorded_s = float(source.times[-1] - source.times[0])
+    return float(recorded_s * 2.0 ** (-DOUBLINGS * effort.time))
+
+
+def _share(performed: Effort, asked: Effort) -> float:
+    pairs = zip(performed.values.values(), asked.values.values(), strict=True)
+    return max((done / wanted for done, wanted in pairs if wanted), default=1.0)

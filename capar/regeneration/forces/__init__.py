@@ -1,1 +1,0 @@
-"""Things that another body sets going: the force it gives them, and how they move on alone."""
