@@ -19,16 +19,14 @@ from pyoxigraph import (
 
 from capar.model.errors import FileError, UnknownNameError
 from kb.corrections import claim_statements
-from kb.errors import SchemaError, ShapeError
+from kb.errors import ShapeError
 from kb.json_ld import with_context
 from kb.lookup.agents import aliases, joined
 from kb.lookup.stored import observations
-from kb.schema_steps import STEPS, migration
 from kb.store import names, schema, shacl_validation
 from kb.store import updates as writing
 from kb.store.answers import turtle
 from kb.store.consistency import inconsistencies
-from kb.store.embedded import EmbeddedStore
 from kb.store.statements import insertion
 from kb.store.stores import Store
 from ontology import DATA, PREFIXES
@@ -194,19 +192,6 @@ def _name(term: object) -> NamedNode:
     return term  # type: ignore[return-value]
 
 
-def _present(quads: list[Quad], source: str) -> list[Quad]:
-    """Exported statements in the form of this version."""
-    found = schema.version_of(quads)
-    if found in {None, schema.SCHEMA}:
-        return quads
-    if found not in STEPS:
-        raise SchemaError(source, found or 0, schema.remedy(source, found or 0))
-    store = EmbeddedStore(None)
-    store.bulk(quads)
-    store.change(" ;\n".join(migration(store, found)))
-    return list(store.quads())
-
-
 def _classes(store: Store, thing: NamedNode) -> list[object]:
     """What a store says that a thing is."""
     return [row[0] for row in store.ask(f"SELECT ?kind WHERE {{ {thing} a ?kind }}").rows]
@@ -215,18 +200,18 @@ def _classes(store: Store, thing: NamedNode) -> list[object]:
 def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -> tuple[int, int]:
     """Add statements, all or none; an observation among them replaces the one of its name.
 
-    The ontology is the program's own and is not taken from outside. What an older program
-    exported is brought to the present schema.
+    The ontology is the program's own and is not taken from outside.
 
     Returns:
         How many statements and how many observations came in.
 
     Raises:
-        SchemaError: A newer program exported them.
+        SchemaError: A program of another schema exported them.
         ShapeError: They break the model.
     """
-    present = _present(list(quads), source)
-    taken = [each for each in present if each.graph_name != names.GRAPHS["ontology"]]
+    stated = list(quads)
+    schema.check_version(source, schema.version_of(stated))
+    taken = [each for each in stated if each.graph_name != names.GRAPHS["ontology"]]
     triples = [each.triple for each in taken]
     problems = (
         *shacl_validation.violations(triples, elsewhere=lambda thing: _classes(store, thing)),

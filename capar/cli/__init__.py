@@ -57,7 +57,6 @@ GROUPS = {
         "export": "share.export",
         "import": "share.import_",
         "backup": "share.backup",
-        "migrate": "migrate.migrate",
         "serve": "ask.serve",
     },
 }

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from capar.model.calibration import Calibration
 from capar.model.errors import CaparError, ParError
-from capar.model.facts import ALL_FACT_KINDS, Fact, read_fact
+from capar.model.facts import Fact, read_fact
 from capar.model.notices import KINDS as NOTICE_KINDS
 from capar.model.notices import Notice, read_notice
 from capar.model.observation import Observation
@@ -18,15 +18,6 @@ from capar.model.par import ComplexPar, FeatureSet, Ipar, Upar
 
 SCHEMA = 3
 """The version that this program reads and writes, the field ``schema`` of an observation."""
-
-
-def version(text: str, *, where: str = "") -> int:
-    """The version of the observation that a JSON text states.
-
-    Raises:
-        ParError: The text is no JSON object, or its version is no number from 1.
-    """
-    return _version(_document(text, where), where)
 
 
 def take_schema(content: dict[str, Any], where: str) -> None:
@@ -41,7 +32,7 @@ def take_schema(content: dict[str, Any], where: str) -> None:
     if found < SCHEMA:
         raise ParError(
             f"{_place(where)}this is an observation of schema {found}, this program reads "
-            f"{SCHEMA}; run: capar migrate {where or 'FILE'}"
+            f"{SCHEMA}; observe the capture again"
         )
     if found > SCHEMA:
         raise ParError(
@@ -49,40 +40,6 @@ def take_schema(content: dict[str, Any], where: str) -> None:
             f"reads {SCHEMA}); install a capar that reads it, or observe the capture again"
         )
     del content["schema"]
-
-
-def migrated(text: str, *, where: str = "") -> str:
-    """An observation's JSON text, brought from its older version to this one.
-
-    Raises:
-        ParError: It is no JSON object, or its version is no number from 1.
-    """
-    content = _document(text, where)
-    found = _version(content, where)
-    if found < SCHEMA:
-        content = _of_present_kinds(_from_1(content) if found == 1 else content)
-    return json.dumps(content)
-
-
-def _of_present_kinds(content: dict[str, Any]) -> dict[str, Any]:
-    """The same in the present version, without facts that are no longer measured."""
-    known = {each.predicate for each in ALL_FACT_KINDS}
-    facts = content.get("facts", [])
-    kept = [each for each in facts if str(each).partition("(")[0] in known]
-    return {**content, "schema": SCHEMA, "facts": kept}
-
-
-def _from_1(content: dict[str, Any]) -> dict[str, Any]:
-    """The same with notices as version 2 has them."""
-    return {**content, "notices": [_sentence_only(each) for each in content.get("notices", [])]}
-
-
-def _sentence_only(notice: Any) -> Any:
-    """A notice of version 1, which had a code and a sentence, kept in its own words."""
-    if not isinstance(notice, dict) or "bodies" in notice:
-        return notice
-    values = {"was": notice.get("code"), "text": notice.get("message")}
-    return {"code": "earlier", "bodies": [], "values": values}
 
 
 def _document(text: str, where: str) -> dict[str, Any]:

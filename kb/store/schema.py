@@ -1,10 +1,4 @@
-"""The version of the form in which statements are stored, checked whenever a store is opened.
-
-Version 1 stated no version. Version 2 states it, and gives each segment its address. Version 3 has
-facts of a class each that refer to bodies, where version 2 had texts. Version 4 says of what was
-done alone that it has an action; representations, steps, calls, locations and styles are of one.
-Contacts of end-effectors tell for how long the thing is held and moves.
-"""
+"""The schema version of a store, checked whenever it is opened; others are refused."""
 
 from collections.abc import Iterable
 
@@ -64,18 +58,16 @@ def check_current(store: Store) -> None:
     Raises:
         SchemaError: It is of another one; the message says what to do.
     """
-    found = version(store)
+    check_version(store.place, version(store))
+
+
+def check_version(place: str, found: int | None) -> None:
+    """Check that what a store or a file holds is of this version, or that it holds nothing.
+
+    Raises:
+        SchemaError: It is of another one.
+    """
     if found is not None and found != SCHEMA:
-        raise SchemaError(store.place, found, remedy(store.place, found))
-
-
-def remedy(place: str, found: int) -> str:
-    """What to do about a store of another version."""
-    if FIRST <= found < SCHEMA:
-        return f"this program reads schema {SCHEMA}; run: capar migrate --actionary {place}"
-    if found > SCHEMA:
-        return (
-            f"a newer program wrote it, this one reads schema {SCHEMA}; install a capar that "
-            "reads it, or observe the captures again into another Actionary"
-        )
-    return "no program wrote such a version; restore the Actionary from an export (capar import)"
+        remedy = f"this program reads schema {SCHEMA}; observe the captures again"
+        newer = ", or install the capar that wrote it" if found > SCHEMA else ""
+        raise SchemaError(place, found, f"{remedy}{newer}")
