@@ -32,7 +32,7 @@ bench: $(VENV)/developing  ## Ratios side by side; takes more than an hour.
 
 docs: $(VENV)/developing  ## What is written from code: the reference of capture.toml, terms of facts.
 	$(VENV)/bin/python -m extractors.readers.schema.reference docs/capture-toml.md
-	$(VENV)/bin/python -m kb.encode.fact_terms
+	$(VENV)/bin/python -m ontology.fact_kinds
 
 develop: $(VENV)/developing  ## An editable install with everything for development.
 

@@ -24,8 +24,8 @@ from capar.model.observation import Observation
 from kb.actionary import Actionary
 from kb.encode import encode
 from kb.queries.questions import question
-from kb.store.embedded import EmbeddedStore
 from kb.store.names import GRAPHS
+from kb.store.stores import EmbeddedStore
 from ontology.files import ontology
 
 MADE = (drink_from_mug(), pick_up_with_both_hands(), with_unknown())

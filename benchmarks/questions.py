@@ -14,8 +14,8 @@ from pathlib import Path
 from pyoxigraph import Literal, NamedNode, Quad
 
 from kb.actionary import Actionary
-from kb.store.embedded import EmbeddedStore
 from kb.store.names import GRAPHS, OBSERVATION
+from kb.store.stores import EmbeddedStore
 
 REPEATS = 5
 LONGEST_S = 20.0

@@ -5,11 +5,11 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from kb.errors import StoreError
-from kb.findings import Added, Stored
-from kb.knowledge import Knowledge
-from kb.lookup import stored
+from kb.lookup import observations
+from kb.lookup.locations import Knowledge
+from kb.lookup.observations import Added
 from kb.queries.questions import question
-from kb.store import schema, sparql
+from kb.store import sparql, updates
 from kb.store import updates as writing
 from kb.store.answers import Answer, Plain
 from kb.store.stores import Store, open_store
@@ -33,7 +33,7 @@ class Actionary(Knowledge):
             StoreError: The store answers like no Actionary.
         """
         self.store = store
-        schema.check_current(store)
+        updates.check_current(store)
         if not read_only:
             self._prepare()
 
@@ -116,7 +116,7 @@ class Actionary(Knowledge):
             ExistsError: Another capture of the same name is there.
             ShapeError: It breaks the model.
         """
-        return stored.add(self.store, observation, name=name, replace=replace)
+        return observations.add(self.store, observation, name=name, replace=replace)
 
     def forget(self, name: str) -> None:
         """Remove an observation, and everything that no other one mentions.
@@ -124,11 +124,7 @@ class Actionary(Knowledge):
         Raises:
             UnknownNameError: There is no observation of that name.
         """
-        stored.forget(self.store, name)
-
-    def observations(self) -> tuple[Stored, ...]:
-        """Every observation, by name."""
-        return stored.observations(self.store)
+        observations.forget(self.store, name)
 
     # Questions
 

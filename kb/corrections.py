@@ -1,25 +1,23 @@
-"""What persons say was done, beside what the machine says.
+"""Corrections: what persons say was done, beside what the machine says."""
 
-It is kept in seconds, so that it outlasts another observation of the capture with other segments.
-"""
-
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from itertools import groupby
 
 from pyoxigraph import Literal, NamedNode, Quad
 
 from capar.model.errors import UnknownNameError
-from capar.model.observation import SegmentAddress
+from capar.model.observation import ObservedLink, Segment, SegmentAddress
 from capar.model.par import ACTION_NAME, UNKNOWN
 from kb.errors import CorrectionError
-from kb.lookup.stored import observations
+from kb.lookup.pars import observations
 from kb.store import names
 from kb.store.sparql import fill
 from kb.store.statements import LABEL, TYPE
-from kb.store.stores import Store
+from kb.store.stores import EmbeddedStore, Store
 from ontology import CAPAR
-from ontology.vocabularies import PROV, XSD
+from ontology.namespace import PROV, XSD
 
 GRAPH = names.GRAPHS["corrections"]
 BY = NamedNode(PROV + "wasAttributedTo")
@@ -239,3 +237,167 @@ def _spans(rows: Iterable[Sequence[object]]) -> tuple[Span, ...]:
             Span(ee, float(start), float(end), name or UNKNOWN, objects, by[0] if by else "")
         )
     return tuple(found)
+
+
+def corrected_links(
+    links: Sequence[ObservedLink], claims: Sequence[Span]
+) -> tuple[ObservedLink, ...]:
+    """The links with every claim in the place of what the machine says of its time.
+
+    A segment that a claim gives or shortens keeps the objects and features of the machine's
+    segment that it overlaps most, and its purpose unless that says what was done in it. Claims
+    about links that there are not change nothing.
+    """
+    return tuple(
+        _corrected(link, own) if (own := [e for e in claims if e.ee == link.ee]) else link
+        for link in links
+    )
+
+
+def _corrected(link: ObservedLink, claims: Sequence[Span]) -> ObservedLink:
+    spans = tuple(Span(e.ee, e.start_s, e.end_s, e.name) for e in link.segments)
+    for claim in claims:
+        spans = overlay(spans, claim)
+    segments = tuple(_segment(link.segments, at, span) for at, span in enumerate(spans))
+    return replace(link, segments=segments)
+
+
+def _segment(machine: Sequence[Segment], index: int, span: Span) -> Segment:
+    basis = max(machine, key=lambda segment: _overlap(segment, span))
+    lasts = basis.end_s - basis.start_s
+    frame_s = lasts / (basis.last - basis.first) if basis.last > basis.first else 0.0
+
+    def frame(time_s: float) -> int:
+        return basis.first + (round((time_s - basis.start_s) / frame_s) if frame_s else 0)
+
+    starts, ends = _near(span.start_s, basis.start_s), _near(span.end_s, basis.end_s)
+    own_name = span.name == basis.name
+    return replace(
+        basis,
+        index=index,
+        name=span.name,
+        purpose=basis.purpose if own_name or not _is_the_deed(basis) else "",
+        general=basis.general if own_name else _general(machine, span.name),
+        candidates=basis.candidates if own_name and span.name == UNKNOWN else (),
+        level=basis.level if own_name else "",
+        first=basis.first if starts else frame(span.start_s),
+        last=basis.last if ends else frame(span.end_s),
+        start_s=span.start_s,
+        end_s=span.end_s,
+        begins=basis.begins if starts else (),
+        ends=basis.ends if ends else (),
+    )
+
+
+def _general(machine: Sequence[Segment], name: str) -> tuple[str, ...]:
+    """What an action specialises, where another segment of that name tells."""
+    return next((segment.general for segment in machine if segment.name == name), ())
+
+
+def _is_the_deed(segment: Segment) -> bool:
+    """Whether a purpose says what was done in a segment: relations are the same at its end."""
+    return segment.features.rel_start == segment.features.rel_end
+
+
+def _overlap(segment: Segment, span: Span) -> float:
+    return min(segment.end_s, span.end_s) - max(segment.start_s, span.start_s)
+
+
+def _near(one_s: float, other_s: float) -> bool:
+    return abs(one_s - other_s) <= LEAST_S
+
+
+Term = NamedNode | Literal
+Properties = list[tuple[NamedNode, Term]]
+
+_REPLACED = {
+    LABEL, CAPAR.start, CAPAR.end, CAPAR.duration, CAPAR.action, CAPAR.index, CAPAR.address,
+    CAPAR.next, CAPAR.general, CAPAR.specialises, CAPAR.candidate, CAPAR.failedAt, CAPAR.namedBy,
+}  # fmt: skip
+
+
+def corrected(store: Store) -> EmbeddedStore:
+    """A copy in memory, in which every claim of a person stands in the machine's place.
+
+    A segment that was changed keeps what was measured of the one that it overlaps most: objects,
+    features, borders. What else refers to segments (steps of the whole action, places) is the
+    machine's still.
+    """
+    copy = EmbeddedStore(None)
+    quads = set(store.quads())
+    listed = {each.name for each in observations(store)}
+    for capture in sorted(listed & set(corrected_captures(store))):
+        graph = names.observation(capture)
+        own = [each for each in quads if each.graph_name == graph]
+        for ee, spans in groupby(account(store, capture), key=lambda each: each.ee):
+            quads = quads.difference(_of_segments(own, ee)).union(
+                _rewritten(own, graph, capture, list(spans))
+            )
+    copy.bulk(sorted(quads, key=str))
+    return copy
+
+
+def _of_segments(own: Sequence[Quad], ee: str) -> Iterator[Quad]:
+    nodes = set(_segments(own, ee))
+    yield from (each for each in own if each.subject in nodes)
+    yield from (each for each in own if each.predicate == CAPAR.segment and each.object in nodes)
+
+
+def _segments(own: Sequence[Quad], ee: str) -> dict[NamedNode, Properties]:
+    """The machine's segments of an end-effector, each with all that is said of it."""
+    stated = {(each.subject, each.predicate, each.object) for each in own}
+    found: dict[NamedNode, Properties] = {}
+    for statement in own:
+        node, value = statement.subject, statement.object
+        asked = {(node, TYPE, CAPAR.Segment), (node, CAPAR.ee, Literal(ee))}
+        if asked <= stated and isinstance(node, NamedNode) and isinstance(value, Term):
+            found.setdefault(node, []).append((statement.predicate, value))
+    return found
+
+
+def _rewritten(
+    own: Sequence[Quad], graph: NamedNode, capture: str, spans: Sequence[Span]
+) -> Iterator[Quad]:
+    machine = _segments(own, spans[0].ee)
+    nodes = [names.part(graph, "account", each.ee, at) for at, each in enumerate(spans)]
+    for at, (node, span) in enumerate(zip(nodes, spans, strict=True)):
+        basis = max(
+            sorted(machine, key=str), key=lambda each: _overlap_corrected_view(machine[each], span)
+        )
+        kept = [each for each in machine[basis] if each[0] not in _REPLACED]
+        if span.name != UNKNOWN:
+            kept = [each for each in kept if each[1] != CAPAR.UnknownSegment]
+        told = [*kept, *_claimed(span, at, capture)]
+        told += [(CAPAR.next, each) for each in nodes[at + 1 : at + 2]]
+        yield Quad(graph, CAPAR.segment, node, graph)
+        yield from (Quad(node, predicate, value, graph) for predicate, value in told)
+        yield from _action(span.name)
+
+
+def _claimed(span: Span, at: int, capture: str) -> Properties:
+    told: Properties = [
+        (LABEL, Literal(f"{span.ee} {at}: {span.name}")),
+        (CAPAR.start, Literal(span.start_s)),
+        (CAPAR.end, Literal(span.end_s)),
+        (CAPAR.duration, Literal(span.end_s - span.start_s)),
+        (CAPAR.index, Literal(at)),
+        (CAPAR.address, Literal(str(SegmentAddress(span.ee, at, capture)))),
+    ]
+    if span.name != UNKNOWN:
+        told.append((CAPAR.action, names.shared("action", span.name)))
+    return told + ([(BY, names.shared("person", span.by))] if span.by else [])
+
+
+def _action(name: str) -> Iterator[Quad]:
+    """That there is such an action; what is more general than it, the store says if it knows."""
+    if name != UNKNOWN:
+        node, graph = names.shared("action", name), names.GRAPHS["actions"]
+        yield Quad(node, TYPE, CAPAR.Action, graph)
+        yield Quad(node, LABEL, Literal(name), graph)
+        yield Quad(node, CAPAR.name, Literal(name), graph)
+        yield Quad(node, CAPAR.kindOf, node, graph)
+
+
+def _overlap_corrected_view(properties: Properties, span: Span) -> float:
+    times = {p: float(o.value) for p, o in properties if p in (CAPAR.start, CAPAR.end)}
+    return min(times[CAPAR.end], span.end_s) - max(times[CAPAR.start], span.start_s)

@@ -1,8 +1,11 @@
-"""The Actionary in and out: Turtle, TriG, N-Quads, JSON-LD and RDF/XML."""
+"""The Actionary in and out: RDF files, backups, and episodes in terms of SOMA."""
 
-from collections.abc import Iterable
+import json
+from collections.abc import Iterable, Sequence
 from functools import cache
+from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 from pyoxigraph import (
     BlankNode,
@@ -19,18 +22,41 @@ from pyoxigraph import (
 
 from capar.model.errors import FileError, UnknownNameError
 from kb.corrections import claim_statements
-from kb.errors import ShapeError
-from kb.json_ld import with_context
+from kb.errors import ShapeError, StoreError
 from kb.lookup.agents import aliases, joined
-from kb.lookup.stored import observations
-from kb.store import names, schema, shacl_validation
+from kb.lookup.pars import observations
+from kb.store import names, sparql, updates, validation
 from kb.store import updates as writing
 from kb.store.answers import turtle
-from kb.store.consistency import inconsistencies
 from kb.store.statements import insertion
 from kb.store.stores import Store
+from kb.store.validation import inconsistencies
 from ontology import DATA, PREFIXES
 from ontology import files as ontology_files
+
+
+def with_context(expanded: bytes) -> bytes:
+    """Expanded JSON-LD with our prefixes as its context; it states the same."""
+    document = {"@context": dict(PREFIXES), "@graph": _compact(json.loads(expanded))}
+    return (json.dumps(document, indent=1, ensure_ascii=False) + "\n").encode()
+
+
+def _compact(value: Any, under: str = "") -> Any:
+    """A value with the IRIs short that name its keys, classes, datatypes and things."""
+    if isinstance(value, dict):
+        return {_short(key): _compact(each, key) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_compact(each, under) for each in value]
+    return _short(value) if under in {"@id", "@type"} else value
+
+
+def _short(iri: str) -> str:
+    for prefix, base in PREFIXES.items():
+        name = iri.removeprefix(base)
+        if iri.startswith(base) and not name.startswith("//"):
+            return f"{prefix}:{name}"
+    return iri
+
 
 FORMATS = {
     "turtle": RdfFormat.TURTLE,
@@ -97,7 +123,7 @@ def export(
         left_out = None if runs else names.GRAPHS["runs"]
         quads = sorted({e for e in store.quads() if e.graph_name != left_out}, key=str)
     else:
-        quads = sorted({*part(store, observation), schema.statement()}, key=str)
+        quads = sorted({*part(store, observation), updates.statement()}, key=str)
     form = FORMATS[format_name]
     if form == RdfFormat.TURTLE:
         return turtle(dict.fromkeys(quad.triple for quad in quads), form=form).encode()
@@ -210,12 +236,12 @@ def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -
         ShapeError: They break the model.
     """
     stated = list(quads)
-    schema.check_version(source, schema.version_of(stated))
+    updates.check_version(source, updates.version_of(stated))
     taken = [each for each in stated if each.graph_name != names.GRAPHS["ontology"]]
     triples = [each.triple for each in taken]
     problems = (
-        *shacl_validation.violations(triples, elsewhere=lambda thing: _classes(store, thing)),
-        *shacl_validation.nlt_problems(triples),
+        *validation.violations(triples, elsewhere=lambda thing: _classes(store, thing)),
+        *validation.nlt_problems(triples),
         *inconsistencies(triples),
     )
     if problems:
@@ -233,3 +259,85 @@ def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -
         removals = [writing.removal(NamedNode(each)) for each in seen]
         store.change(" ;\n".join([*removals, insertion(taken)]))
     return len(taken), len(seen)
+
+
+def back_up(store: Store, file: Path) -> int:
+    """Write every statement, when and where observations were made included, as N-Quads.
+
+    Every statement is read first, and the file is read again when it is written.
+
+    Returns:
+        How many statements it holds.
+
+    Raises:
+        FileError: The file is there already.
+        DamagedError: A statement cannot be read.
+        StoreError: The file does not hold what the store does.
+    """
+    store.check_readable()
+    data = export(store, "nquads", runs=True)
+    try:
+        with file.open("xb") as target:
+            target.write(data)
+    except FileExistsError:
+        raise FileError(file, "exists already.", "Name another file.") from None
+    kept = len(read(file.read_bytes(), "nquads", path=file)) if data else 0
+    held = len(set(store.quads()))
+    if kept != held:
+        file.unlink()
+        raise StoreError(f"{file}: {kept} statements were written of {held}; try again")
+    return kept
+
+
+def back_up_rules(folder: Path | None, file: Path) -> Sequence[Path]:
+    """Copy the rule files that stand in an Actionary's folder into a folder beside its backup."""
+    rules = sorted(folder.glob("*.lp")) if folder and folder.is_dir() else []
+    beside = file.with_name(f"{file.stem}.rules")
+    copies = []
+    for rule_file in rules:
+        beside.mkdir(exist_ok=True)
+        copies.append(beside / rule_file.name)
+        copies[-1].write_bytes(rule_file.read_bytes())
+    return copies
+
+
+VOCABULARIES = {
+    "dul": "http://www.ontologydesignpatterns.org/ont/dul/DUL.owl#",
+    "soma": "http://www.ease-crc.org/ont/SOMA.owl#",
+    "rdfs": PREFIXES["rdfs"],
+}
+"""All whose terms an episode uses."""
+
+
+def episode(store: Store, observation: str) -> tuple[Triple, ...]:
+    """The statements of an episode, sorted.
+
+    Raises:
+        UnknownNameError: There is no such observation.
+    """
+    known = [observation.name for observation in observations(store)]
+    if observation not in known:
+        raise UnknownNameError("observation", observation, known, where=store.place)
+    template = (files("kb") / "soma_episode.rq").read_text(encoding="utf-8")
+    query = sparql.fill(template, graph=str(names.observation(observation)))
+    return tuple(sorted(store.ask(sparql.complete(query)).triples or (), key=str))
+
+
+def export_episode(store: Store, format_name: str, observation: str) -> bytes:
+    """The same as bytes that are always the same.
+
+    Raises:
+        UnknownNameError: There is no such format or observation.
+        StoreError: It shows nothing that was done.
+    """
+    if format_name not in FORMATS:
+        raise UnknownNameError("format", format_name, FORMATS)
+    stated = episode(store, observation)
+    if not stated:
+        raise StoreError(f"{observation}: nothing was done in it")
+    form = FORMATS[format_name]
+    if form == RdfFormat.JSON_LD:
+        return with_context(serialize(stated, format=form) or b"")
+    if form == RdfFormat.N_QUADS:
+        return serialize(stated, format=form) or b""
+    return serialize(stated, format=form, prefixes=VOCABULARIES) or b""

@@ -9,12 +9,11 @@ from typing import Any, TypeAlias
 from pyoxigraph import Literal, NamedNode, Quad, Triple
 
 from kb.exchange import part
-from kb.lookup.stored import observations
-from kb.store import names, shacl_validation
-from kb.store.consistency import inconsistencies
-from kb.store.literals import LiteralError, nlt_of, numbers
-from kb.store.statements import TYPE
+from kb.lookup.pars import observations
+from kb.store import names, validation
+from kb.store.statements import TYPE, LiteralError, nlt_of, numbers
 from kb.store.stores import Store
+from kb.store.validation import inconsistencies
 from ontology import BASE, CAPAR, DATA
 from ontology.files import ontology, ontology_kinds, shape_files, subclasses
 
@@ -81,8 +80,8 @@ def check(store: Store, *, full: bool = False) -> tuple[Problem, ...]:
 def _faults(quads: list[Quad], kinds: Mapping[object, list[object]], sizes: Sizes) -> list[str]:
     """What is wrong with statements by shapes, NLTs, units and reach, as lines."""
     return [
-        *shacl_validation.violations(quads, elsewhere=lambda thing: kinds.get(thing, ())),
-        *shacl_validation.nlt_problems(quads),
+        *validation.violations(quads, elsewhere=lambda thing: kinds.get(thing, ())),
+        *validation.nlt_problems(quads),
         *inconsistencies(quads),
         *_out_of_reach(quads, sizes),
     ]
@@ -110,7 +109,7 @@ def by_shacl(triples: Iterable[Triple]) -> list[tuple[str, str]]:
     from pyshacl import validate
     from rdflib import Graph, Namespace
 
-    shacl = Namespace(shacl_validation.SH)
+    shacl = Namespace(validation.SH)
     data = Graph()
     stated = [*triples, *subclasses()]
     stated += _of_ontology(stated)

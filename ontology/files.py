@@ -8,8 +8,7 @@ from importlib.resources.abc import Traversable
 
 from pyoxigraph import NamedNode, RdfFormat, Triple, parse
 
-from ontology.closed import BASE, DATA
-from ontology.vocabularies import RDF, RDFS
+from ontology.namespace import BASE, DATA, RDF, RDFS
 
 WHOLE = NamedNode(BASE.removesuffix("#"))
 """The ontology itself."""

@@ -1,362 +1,86 @@
-"""The words of the knowledge base as a closed namespace, file by file."""
+"""The terms of the ontology as a closed namespace, and the vocabularies of others."""
 
-# ruff: noqa: N815  (the terms of an ontology are in mixed case)
-
+import re
 from functools import cache
+from importlib.resources import files
+from types import MappingProxyType
 
 from pyoxigraph import NamedNode
 
-from ontology.closed import names
-from ontology.fact_kinds import FactKinds
+from capar.model.errors import UnknownNameError
+
+BASE = "https://w3id.org/capar/ontology#"
+"""The namespace of every term of ours."""
+
+DATA = "https://w3id.org/capar/data/"
+"""The namespace of what is stored: observations, agents, kinds, actions."""
+
+RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
+RDFS = "http://www.w3.org/2000/01/rdf-schema#"
+XSD = "http://www.w3.org/2001/XMLSchema#"
+PROV = "http://www.w3.org/ns/prov#"
+TIME = "http://www.w3.org/2006/time#"
+OWL = "http://www.w3.org/2002/07/owl#"
+SKOS = "http://www.w3.org/2004/02/skos/core#"
+
+PREFIXES = MappingProxyType(
+    {
+        "capar": BASE,
+        "data": DATA,
+        "rdf": RDF,
+        "rdfs": RDFS,
+        "xsd": XSD,
+        "owl": OWL,
+        "skos": SKOS,
+        "prov": PROV,
+        "time": TIME,
+        "sosa": "http://www.w3.org/ns/sosa/",
+        "qudt": "http://qudt.org/schema/qudt/",
+        "unit": "http://qudt.org/vocab/unit/",
+        "ontolex": "http://www.w3.org/ns/lemon/ontolex#",
+        "ili": "http://globalwordnet.org/ili/",
+    }
+)
+"""Namespaces by prefix, known to every query and written in every export."""
+
+RELATIONS = (
+    *("before", "after", "meets", "metBy", "overlaps", "overlappedBy", "starts", "startedBy"),
+    *("during", "contains", "finishes", "finishedBy", "equals"),
+)
+"""Allen's relations in OWL-Time's words."""
+
+ALLEN = MappingProxyType({each: f"{TIME}interval{each[0].upper()}{each[1:]}" for each in RELATIONS})
+"""Allen's relations as OWL-Time's properties."""
+
+_TERM = re.compile(r"^capar:(\w+)", re.MULTILINE)
 
 
-class CAPAR(FactKinds):
-    """Every term of the ontology's files, file by file."""
+class _Closed(type):
+    """A class whose attributes are the terms that the ontology's files state."""
 
-    # agents.ttl
-    Agent: NamedNode
-    Performer: NamedNode
-    Measure: NamedNode
-    Capability: NamedNode
-    ValueRange: NamedNode
-    Distribution: NamedNode
-    Normal: NamedNode
-    Poisson: NamedNode
-    Uniform: NamedNode
-    Link: NamedNode
-    performer: NamedNode
-    agent: NamedNode
-    capability: NamedNode
-    nominal: NamedNode
-    parameter: NamedNode
-    mean: NamedNode
-    standardDeviation: NamedNode
-    distribution: NamedNode
-    measure: NamedNode
-    value: NamedNode
-    link: NamedNode
-    ee: NamedNode
-    effectorType: NamedNode
-    side: NamedNode
-    # objects.ttl
-    PhysicalObject: NamedNode
-    TagObject: NamedNode
-    ObjectKind: NamedNode
-    Tag: NamedNode
-    Self: NamedNode
-    Fixed: NamedNode
-    Mobile: NamedNode
-    object: NamedNode
-    dominant: NamedNode
-    subordinate: NamedNode
-    kind: NamedNode
-    isA: NamedNode
-    broaderKind: NamedNode
-    tag: NamedNode
-    size: NamedNode
-    shape: NamedNode
-    assumedFrom: NamedNode
-    affords: NamedNode
-    declared: NamedNode
-    Body: NamedNode
-    Sensor: NamedNode
-    track: NamedNode
-    sampledTrack: NamedNode
-    # sites.ttl
-    Site: NamedNode
-    StateSpace: NamedNode
-    RelativeDirection: NamedNode
-    SpecialDirection: NamedNode
-    coordinateSystem: NamedNode
-    graspSite: NamedNode
-    state: NamedNode
-    relativeDirection: NamedNode
-    specialDirection: NamedNode
-    position: NamedNode
-    orientation: NamedNode
-    velocity: NamedNode
-    acceleration: NamedNode
-    forceVector: NamedNode
-    torque: NamedNode
-    dampingForce: NamedNode
-    restitution: NamedNode
-    direction: NamedNode
-    vector: NamedNode
-    nlt: NamedNode
-    path: NamedNode
-    # actions.ttl
-    Action: NamedNode
-    Par: NamedNode
-    Upar: NamedNode
-    Ipar: NamedNode
-    Condition: NamedNode
-    Call: NamedNode
-    Preparation: NamedNode
-    CoreSemantics: NamedNode
-    Motion: NamedNode
-    NoMotion: NamedNode
-    Translation: NamedNode
-    Rotation: NamedNode
-    TranslationAndRotation: NamedNode
-    name: NamedNode
-    ofAction: NamedNode
-    instanceOf: NamedNode
-    specialises: NamedNode
-    kindOf: NamedNode
-    parameters: NamedNode
-    agentParameter: NamedNode
-    general: NamedNode
-    arity: NamedNode
-    applicability: NamedNode
-    preparation: NamedNode
-    condition: NamedNode
-    remedy: NamedNode
-    executionStep: NamedNode
-    core: NamedNode
-    motion: NamedNode
-    moved: NamedNode
-    causal: NamedNode
-    forceOn: NamedNode
-    pathEnds: NamedNode
-    purpose: NamedNode
-    enables: NamedNode
-    termination: NamedNode
-    duration: NamedNode
-    manner: NamedNode
-    postAssertion: NamedNode
-    parentName: NamedNode
-    posture: NamedNode
-    start: NamedNode
-    conditionKind: NamedNode
-    holds: NamedNode
-    index: NamedNode
-    # borders.ttl
-    BorderKind: NamedNode
-    Placement: NamedNode
-    CaptureBegins: NamedNode
-    CaptureEnds: NamedNode
-    ContactBegins: NamedNode
-    ContactEnds: NamedNode
-    StartsMoving: NamedNode
-    StopsMoving: NamedNode
-    Turns: NamedNode
-    ComesToRest: NamedNode
-    LeavesRest: NamedNode
-    Reverses: NamedNode
-    Levels: NamedNode
-    BeginsSwinging: NamedNode
-    EndsSwinging: NamedNode
-    Tips: NamedNode
-    Rights: NamedNode
-    BeginsLooking: NamedNode
-    EndsLooking: NamedNode
-    ShiftsWeight: NamedNode
-    placement: NamedNode
-    preposition: NamedNode
-    # complex.ttl
-    ComplexPar: NamedNode
-    ComplexStep: NamedNode
-    Step: NamedNode
-    JointAction: NamedNode
-    complexStep: NamedNode
-    enacts: NamedNode
-    step: NamedNode
-    jointAction: NamedNode
-    realises: NamedNode
-    effectors: NamedNode
-    segmentNumbers: NamedNode
-    share: NamedNode
-    begin: NamedNode
-    standsFor: NamedNode
-    sameAction: NamedNode
-    resumes: NamedNode
-    fragmentOf: NamedNode
-    rights: NamedNode
-    steadies: NamedNode
-    nextStep: NamedNode
-    objectNumbers: NamedNode
-    # constraints.ttl
-    Constraint: NamedNode
-    ConstraintLocation: NamedNode
-    Guide: NamedNode
-    constraint: NamedNode
-    collidingFirst: NamedNode
-    collidingSecond: NamedNode
-    location: NamedNode
-    guide: NamedNode
-    guideKind: NamedNode
-    opened: NamedNode
-    residual: NamedNode
-    ofSegment: NamedNode
-    goal: NamedNode
-    seen: NamedNode
-    dominantKind: NamedNode
-    goalKind: NamedNode
-    seenKind: NamedNode
-    eeNlt: NamedNode
-    goalNlt: NamedNode
-    vNlt: NamedNode
-    # styles.ttl
-    AgentStyle: NamedNode
-    style: NamedNode
-    velStyle: NamedNode
-    pathStyle: NamedNode
-    # features.ttl
-    FeatureSet: NamedNode
-    FeatureRow: NamedNode
-    features: NamedNode
-    relStart: NamedNode
-    relEnd: NamedNode
-    changeLoc: NamedNode
-    forceApplied: NamedNode
-    objectCount: NamedNode
-    # events.ttl
-    Segment: NamedNode
-    UnknownSegment: NamedNode
-    Border: NamedNode
-    Look: NamedNode
-    segment: NamedNode
-    ofLink: NamedNode
-    action: NamedNode
-    candidate: NamedNode
-    failedAt: NamedNode
-    possesses: NamedNode
-    beginsWith: NamedNode
-    endsWith: NamedNode
-    borderKind: NamedNode
-    body: NamedNode
-    other: NamedNode
-    objects: NamedNode
-    next: NamedNode
-    address: NamedNode
-    frame: NamedNode
-    firstFrame: NamedNode
-    lastFrame: NamedNode
-    end: NamedNode
-    rateMhz: NamedNode
-    objectName: NamedNode
-    actionName: NamedNode
-    goalName: NamedNode
-    tagName: NamedNode
-    rank: NamedNode
-    look: NamedNode
-    when: NamedNode
-    previous: NamedNode
-    segmentOf: NamedNode
-    # facts.ttl
-    Fact: NamedNode
-    IntervalFact: NamedNode
-    ContactFact: NamedNode
-    InstantFact: NamedNode
-    SampledFact: NamedNode
-    SceneFact: NamedNode
-    fact: NamedNode
-    samples: NamedNode
-    time: NamedNode
-    gap: NamedNode
-    heldFor: NamedNode
-    movedFor: NamedNode
-    upward: NamedNode
-    pressX: NamedNode
-    pressY: NamedNode
-    sightward: NamedNode
-    contactSpeed: NamedNode
-    weightShare: NamedNode
-    arrangement: NamedNode
-    sides: NamedNode
-    phaseKind: NamedNode
-    takenFor: NamedNode
-    mover: NamedNode
-    how: NamedNode
-    unmovedBecause: NamedNode
-    one: NamedNode
-    # provenance.ttl
-    Observation: NamedNode
-    Capture: NamedNode
-    SourceFile: NamedNode
-    RuleBase: NamedNode
-    Notice: NamedNode
-    capture: NamedNode
-    ruleBase: NamedNode
-    notice: NamedNode
-    noticeCode: NamedNode
-    message: NamedNode
-    profile: NamedNode
-    version: NamedNode
-    identity: NamedNode
-    schemaVersion: NamedNode
-    frames: NamedNode
-    rate: NamedNode
-    recordedAt: NamedNode
-    filePath: NamedNode
-    fileFormat: NamedNode
-    sha256: NamedNode
-    mentions: NamedNode
-    Rule: NamedNode
-    Threshold: NamedNode
-    Run: NamedNode
-    namedBy: NamedNode
-    ruleText: NamedNode
-    threshold: NamedNode
-    thresholdValue: NamedNode
-    calibration: NamedNode
-    ofObservation: NamedNode
-    host: NamedNode
-    readFrom: NamedNode
-    # corrections.ttl
-    Correction: NamedNode
-    ofCapture: NamedNode
-    # functions.ttl
-    SparqlFunction: NamedNode
-    element: NamedNode
-    elements: NamedNode
-    speed: NamedNode
-    distance: NamedNode
-    highestSpeed: NamedNode
-    pathLength: NamedNode
-    # lexicon.ttl
-    LevinClass: NamedNode
-    VerbNetClass: NamedNode
-    ClassMember: NamedNode
-    ThematicRole: NamedNode
-    VerbFrame: NamedNode
-    SemanticPredicate: NamedNode
-    LexicalLink: NamedNode
-    CapabilityClaim: NamedNode
-    LexicalRemark: NamedNode
-    linkedAction: NamedNode
-    linkedSense: NamedNode
-    levinClass: NamedNode
-    classMember: NamedNode
-    memberVerb: NamedNode
-    memberSense: NamedNode
-    thematicRole: NamedNode
-    verbFrame: NamedNode
-    semanticPredicate: NamedNode
-    lemma: NamedNode
-    senseKey: NamedNode
-    senseNumber: NamedNode
-    oldSenseNumber: NamedNode
-    synsetOffset: NamedNode
-    lexicographerFile: NamedNode
-    genericSentence: NamedNode
-    classSize: NamedNode
-    claimedBy: NamedNode
-    claimedStatus: NamedNode
-    printedClass: NamedNode
-    claimedVerb: NamedNode
-    reason: NamedNode
-    section: NamedNode
-    quote: NamedNode
-    restriction: NamedNode
-    pattern: NamedNode
-    example: NamedNode
-    syntax: NamedNode
-    predicateName: NamedNode
-    arguments: NamedNode
+    def __getattr__(cls, name: str) -> NamedNode:
+        """The term of that name.
+
+        Raises:
+            UnknownNameError: The ontology has no such term.
+        """
+        if name.startswith("__"):
+            raise AttributeError(name)
+        if name not in terms():
+            raise UnknownNameError("term of the ontology", name, terms())
+        term = NamedNode(BASE + name)
+        setattr(cls, name, term)
+        return term
+
+
+class CAPAR(metaclass=_Closed):
+    """Every term of the ontology's files: ``CAPAR.Segment``."""
 
 
 @cache
 def terms() -> tuple[str, ...]:
     """Names of every term, sorted."""
-    return names(CAPAR)
+    turtle = (each for each in files("ontology").iterdir() if each.name.endswith(".ttl"))
+    return tuple(
+        sorted({name for each in turtle for name in _TERM.findall(each.read_text("utf-8"))})
+    )

@@ -8,7 +8,7 @@ import motions
 import pytest
 
 from kb.actionary import Actionary
-from kb.store.remote import RemoteStore
+from kb.store.stores import RemoteStore
 
 STORES = ("memory", "folder", "server")
 

@@ -26,7 +26,7 @@ from capar_rules.engine.profiles import profile
 from capar_rules.lint.checking import admitted_profile
 from kb.actionary import Actionary
 from kb.errors import StoreError
-from kb.lookup.changes import NamedSegment, source_files
+from kb.lookup.observations import NamedSegment, source_files
 
 DEMO = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
 

@@ -26,7 +26,7 @@ from capar_rules.engine.profiles import profile
 from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary
 from kb.language.describe import describe
-from kb.reports.complex_action_drawing import as_text
+from kb.reports.complex_actions import as_text
 from kb.store_checks import check
 
 BUNDLE = """\
@@ -252,7 +252,7 @@ def test_the_command_writes_the_script_and_hatches_what_was_lost(
 def test_who_was_seen_to_do_it_are_all_that_act(seen: Observation) -> None:
     with Actionary.in_memory() as store:
         store.add(seen)
-        assert "handing_over by woman and tall_man, 5.595 s" in as_text(store.store, seen.capture)
+        assert "handing_over by woman and tall_man, 5.595 s" in as_text(store, seen.capture)
 
 
 def test_the_picture_names_everyone_who_acts(seen: Observation, tmp_path: Path) -> None:

@@ -129,7 +129,7 @@ def _remarks(
 
 
 def _corrected(store: "Store") -> "Store":
-    from kb.corrected_view import corrected
+    from kb.corrections import corrected
 
     return corrected(store)
 
@@ -213,12 +213,12 @@ def show(
     """Draw the complex action NAME: its steps, their shares of time, and who was seen to do it."""
     from capar.model.errors import UnknownNameError
     from kb import Actionary
-    from kb.reports.complex_action_drawing import FORMATS
+    from kb.reports.complex_actions import FORMATS
 
     if format_ not in FORMATS:
         raise UnknownNameError("format", format_, FORMATS)
     with Actionary.open(actionary, read_only=True) as opened:
-        typer.echo(FORMATS[format_](opened.store, name), nl=False)
+        typer.echo(FORMATS[format_](opened, name), nl=False)
 
 
 def serve(

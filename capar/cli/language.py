@@ -78,8 +78,7 @@ def _corrected(observation: "Observation", actionary: str | None) -> "Observatio
     from dataclasses import replace
 
     from kb import Actionary
-    from kb.corrected_links import corrected_links
-    from kb.corrections import claims
+    from kb.corrections import claims, corrected_links
 
     with Actionary.open(actionary, read_only=True) as opened:
         said = claims(opened.store, observation.capture)
@@ -393,7 +392,7 @@ def linguistics(
     with open_words(actionary) as opened_store:
         store = opened_store
         if corrected and store is not None:
-            from kb.corrected_view import corrected as corrected_copy
+            from kb.corrections import corrected as corrected_copy
 
             store = corrected_copy(store)
         report = report_of(files, store=store, cases=cases_of(files, cases))

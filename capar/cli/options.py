@@ -128,8 +128,7 @@ def opened(actionary: str | None) -> str:
 
 def has_actionary(place: str, *, named: str | None) -> bool:
     """Whether observations can be looked up there: in a folder, or at an address that was named."""
-    from kb.store.embedded import DATA_FOLDER
-    from kb.store.stores import is_address
+    from kb.store.stores import DATA_FOLDER, is_address
 
     return bool(named) if is_address(place) else (Path(place) / DATA_FOLDER).is_dir()
 
@@ -146,8 +145,7 @@ def require_actionary(actionary: str | None, *, observed: bool = False) -> None:
     """
     from capar.model.errors import FileError
     from capar_rules.authoring.user_rules import FOLDER
-    from kb.store.embedded import DATA_FOLDER
-    from kb.store.stores import is_address
+    from kb.store.stores import DATA_FOLDER, is_address
 
     place = opened(actionary)
     there = [DATA_FOLDER] if observed else [DATA_FOLDER, FOLDER]
@@ -175,8 +173,7 @@ def confirm_new(actionary: str | None, *, new: bool) -> None:
     from difflib import get_close_matches
 
     from capar.model.errors import FileError
-    from kb.store.embedded import DATA_FOLDER
-    from kb.store.stores import is_address
+    from kb.store.stores import DATA_FOLDER, is_address
 
     place = opened(actionary)
     if new or is_address(place) or Path(place).exists():
@@ -212,9 +209,8 @@ def rule_words(rules: Path | None, actionary: str | None = None) -> "tuple[Primi
 @contextmanager
 def open_words(where: str | None) -> "Iterator[Store | None]":
     """The store of an Actionary to read; None where none is named and none stands here."""
-    from kb.store.embedded import DATA_FOLDER
-    from kb.store.schema import check_current
-    from kb.store.stores import is_address, open_store, place
+    from kb.store.stores import DATA_FOLDER, is_address, open_store, place
+    from kb.store.updates import check_current
 
     target = place(where)
     # The folder of an Actionary may hold rules before it holds anything that was observed.

@@ -107,8 +107,7 @@ def export(
         )
     from kb import Actionary
     from kb.exchange import export as exported
-    from kb.exchange import format_of, misplaced
-    from kb.soma_episode import export_episode
+    from kb.exchange import export_episode, format_of, misplaced
 
     if soma and observation is None:
         raise CaparError("--soma writes one episode; name it by --observation")
@@ -198,7 +197,7 @@ def backup(
     from capar.model.errors import FileError
     from capar_rules.authoring.user_rules import actionary_rules
     from kb import Actionary
-    from kb.backup import back_up, back_up_rules
+    from kb.exchange import back_up, back_up_rules
     from kb.store.stores import is_address
 
     require_actionary(actionary, observed=True)

@@ -36,7 +36,7 @@ from extractors.readers.bundle.capture_toml import read_capture, takes
 from extractors.relations.guides import guide_location
 from extractors.segments import constraint_location, followed, moved_path, sampled_tracks, style
 from extractors.thresholds import Thresholds
-from kb.findings import Stored
+from kb.lookup.pars import Stored
 
 
 def flicker_notices(facts: Iterable[Fact], rate_hz: float) -> Iterator[Notice]:

@@ -10,8 +10,8 @@ from capar.model.facts import Fact, Frames, LookingAt, RateMhz
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
-from kb.encode.scene import kind_of
-from kb.lookup.facts import facts
+from kb.encode.facts import stored_facts
+from kb.encode.shared import kind_of
 from ontology import CAPAR
 
 PLAN_FORMATS = ("pddl", "bt", "bml")
@@ -62,7 +62,7 @@ def stored_plan(actionary: Actionary, name: str) -> PlanSource:
         actionary.upars(),
         kinds,
         name=action,
-        looks=_looks(facts(actionary.store, chosen)),
+        looks=_looks(stored_facts(actionary.store, chosen)),
     )
 
 

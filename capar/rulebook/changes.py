@@ -14,8 +14,8 @@ from capar_rules.lint.checking import admitted_profile
 from capar_rules.pars.inference import infer
 from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary
-from kb.lookup.changes import NamedSegment, named_segments, replace_all, source_files
-from kb.lookup.facts import facts
+from kb.encode.facts import stored_facts
+from kb.lookup.observations import NamedSegment, named_segments, replace_all, source_files
 
 NOTHING = "none"
 """Stands for the name of a segment that is not there before, or not after."""
@@ -254,7 +254,7 @@ def _planned(
 def _kept(store: Actionary, profile: str) -> Kept:
     every = store.observations()
     seen = {
-        each.name: Trial(facts(store.store, each.name), named_segments(store.store, each.name))
+        each.name: Trial(stored_facts(store.store, each.name), named_segments(store.store, each.name))
         for each in every
         if each.profile == profile
     }

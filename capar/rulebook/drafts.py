@@ -21,7 +21,7 @@ from capar_rules.lint.world_checks import rivals
 from capar_rules.pars.inference import infer
 from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary
-from kb.lookup.facts import facts
+from kb.encode.facts import stored_facts
 
 
 def rule_from_features(
@@ -191,7 +191,7 @@ def _measured(capture: str, rules: Profile, actionary: str | None) -> tuple[str,
                             f"cut into segments otherwise by {rules.name}; say --profile "
                             f"{stored.profile}"
                         )
-                    return capture, facts(store.store, capture)
+                    return capture, stored_facts(store.store, capture)
     trial = read_capture(capture)
     return trial.name, facts_program(trial, rules=rules)[0].facts
 

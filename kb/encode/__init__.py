@@ -1,3 +1,3 @@
-"""From an observation to statements: one file a kind of thing."""
+"""From an observation to statements, and facts back."""
 
 from kb.encode.observation import encode as encode

@@ -1,23 +1,73 @@
 """A whole observation as statements: what it found, and where that comes from."""
 
+import hashlib
 import json
-from typing import TYPE_CHECKING
+import os
+import platform
+from collections.abc import Iterable, Mapping
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any
 
-from pyoxigraph import Literal, NamedNode
+from pyoxigraph import Literal, NamedNode, Quad
 
+from capar.model.capture import recorded_at
+from capar.model.errors import UnknownNameError
 from capar.model.json_form import document
-from kb.encode import complex_pars, facts, joint, measures, pars, rules, scene, segments
-from kb.encode.bodies import Bodies
-from kb.encode.held_contacts import held_contacts
-from kb.store import literals, names
+from capar.model.observation import SegmentAddress
+from kb.encode import facts, pars, shared
+from kb.encode.shared import ASSOCIATED, BROADER, DERIVED, ENDED, GENERATED, USED, kind_of
+from kb.store import names, statements
 from kb.store.statements import LABEL, PropertyValues, Statements
 from ontology import CAPAR
-from ontology.vocabularies import RDF
+from ontology.namespace import PREFIXES, RDF, TIME, XSD
 
 if TYPE_CHECKING:
-    from capar.model.observation import Observation
+    from capar.model.capture import Agent
+    from capar.model.observation import Border, ForceStyle, Observation, ObservedObject, Segment
+    from capar.model.par import Nlt
 
+THESIS = "thesis"
+"""The profile in which damping is the thesis's."""
+
+UNNAMED = "agent"
+"""The name of an agent that nobody named."""
+
+OF_INTEREST = NamedNode(PREFIXES["sosa"] + "hasFeatureOfInterest")
+MEETS = NamedNode(TIME + "intervalMeets")
 JSON = NamedNode(RDF + "JSON")
+TAGS = {"self": CAPAR.Self, "fixed": CAPAR.Fixed, "mobile": CAPAR.Mobile}
+
+BORDER_KINDS = {
+    "first": CAPAR.CaptureBegins,
+    "last": CAPAR.CaptureEnds,
+    "begins": CAPAR.ContactBegins,
+    "ends": CAPAR.ContactEnds,
+    "starts_moving": CAPAR.StartsMoving,
+    "stops_moving": CAPAR.StopsMoving,
+    "turns": CAPAR.Turns,
+    "comes_to_rest": CAPAR.ComesToRest,
+    "leaves_rest": CAPAR.LeavesRest,
+    "reverses": CAPAR.Reverses,
+    "levels": CAPAR.Levels,
+    "begins_swinging": CAPAR.BeginsSwinging,
+    "ends_swinging": CAPAR.EndsSwinging,
+    "tips": CAPAR.Tips,
+    "rights": CAPAR.Rights,
+    "begins_looking": CAPAR.BeginsLooking,
+    "ends_looking": CAPAR.EndsLooking,
+    "shifts_weight": CAPAR.ShiftsWeight,
+}
+"""What may happen at a border, by the word that observations use for it."""
+
+
+RELATIONS = {
+    "same_action": CAPAR.sameAction,
+    "resumes": CAPAR.resumes,
+    "fragment_of": CAPAR.fragmentOf,
+    "rights": CAPAR.rights,
+    "steadies": CAPAR.steadies,
+}
+"""How a segment stands to another one, by the word that observations use for it."""
 
 
 def encode(observation: "Observation", *, name: str | None = None) -> Statements:
@@ -31,72 +81,452 @@ def encode(observation: "Observation", *, name: str | None = None) -> Statements
         LiteralError: A number that is not finite.
         ParError: Steps that are related but not there.
     """
-    out = Statements(names.observation(observation.capture))
-    capture = scene.capture(out, observation)
-    agents = scene.agents(out, observation)
-    agent = agents[observation.agent.name]
-    performer = scene.performer(out, observation.agent, agent)
-    for number, each in enumerate(observation.others, start=1):
-        scene.performer(out, each, agents[each.name], number=number)
-    links = scene.links(out, observation, agents)
-    objects = scene.objects(out, observation)
-    bodies = Bodies(out, objects, links)
-    rate_hz = facts.rate_of(
-        observation.facts, frames=observation.frames, duration_s=observation.duration_s
-    )
-    contacts = held_contacts(observation, rate_hz)
-    world = facts.Scene(bodies, agents, rate_hz, contacts)
-    called = name or observation.complex_par.name or observation.capture
-    complex_pars.complex_par(out, observation, called)
-    base = rules.rule_base(out, observation)
-    naming = rules.naming_rules(out, observation)
-    for upar in observation.upars:
-        pars.upar(out, upar)
-    properties: PropertyValues = {
-        LABEL: observation.capture,
-        CAPAR.capture: capture,
-        scene.USED: [capture, base],
-        scene.ASSOCIATED: list(agents.values()),
-        scene.OF_INTEREST: list(objects.values()),
-        CAPAR.ruleBase: base,
-        CAPAR.profile: observation.profile,
-        CAPAR.version: observation.version,
-        CAPAR.identity: scene.identity(observation),
-        CAPAR.performer: performer,
-        CAPAR.agent: agent,
-        CAPAR.object: list(objects.values()),
-        CAPAR.link: list(links.values()),
-        CAPAR.segment: segments.segments(out, observation, links, objects, bodies, naming),
-        CAPAR.jointAction: joint.joint_actions(out, observation, objects),
-        CAPAR.fact: facts.facts(out, observation.facts, world),
-        CAPAR.location: measures.locations(out, observation, agents, objects),
-        CAPAR.guide: measures.guides(out, observation, objects),
-        CAPAR.style: measures.styles(out, observation, agents),
-        CAPAR.notice: _notices(out, observation),
-        CAPAR.calibration: _calibration(observation),
-    }
-    pars.ipars(out, observation, agents, objects)
-    for track in observation.tracks:
-        for body in bodies[track.body]:
-            out.add(body, (), {CAPAR.track: literals.track(track)})
-    out.add(out.about, (CAPAR.Observation,), properties)
-    return out
+    return _Encoder(observation).whole(name or observation.complex_par.name or observation.capture)
 
 
-def _calibration(observation: "Observation") -> Literal | None:
-    """What was decided for the whole recording, thresholds of extraction included, as JSON."""
-    if observation.calibration is None:
-        return None
-    text = json.dumps(document(observation.calibration), separators=(",", ":"))
-    return Literal(text, datatype=JSON)
+def identity(observation: "Observation") -> str:
+    """A digest by which the same capture is known again, whatever rules read it."""
+    sources = sorted(each.sha256 for each in observation.sources)
+    scene = (observation.agent.name, observation.frames, observation.rate_hz, sources)
+    others = tuple(each.name for each in observation.others)
+    return hashlib.sha256(repr((*scene, *others)).encode()).hexdigest()
 
 
-def _notices(out: Statements, observation: "Observation") -> list[NamedNode]:
-    return [
-        out.add(
-            names.part(out.about, "notice", index),
-            (CAPAR.Notice,),
-            {CAPAR.noticeCode: each.code, CAPAR.message: each.message},
+class _Encoder:
+    """Each method states one kind of thing and returns its nodes."""
+
+    def __init__(self, observation: "Observation") -> None:
+        self.seen = observation
+        self.out = Statements(names.observation(observation.capture))
+        self.about = self.out.about
+        self.agents = {
+            each.name: self.agent(each.name) for each in (observation.agent, *observation.others)
+        }
+        self.objects = {each.name: self.object(each) for each in observation.objects}
+        self.kinds = {each.name: kind_of(each) for each in observation.objects}
+        self.links = {
+            link.ee: self.add(
+                CAPAR.Link,
+                "link",
+                link.ee,
+                {
+                    CAPAR.name: link.ee,
+                    CAPAR.ee: link.ee,
+                    CAPAR.effectorType: link.kind,
+                    CAPAR.side: link.side,
+                    CAPAR.agent: self.performer(link.ee),
+                },
+            )
+            for link in observation.links
+        }
+
+    def add(
+        self, kind: NamedNode, word: str, key: str | int, properties: PropertyValues
+    ) -> NamedNode:
+        """Add a thing of the observation, named by a word and a key."""
+        return self.out.add(names.part(self.about, word, key), (kind,), properties)
+
+    def whole(self, called: str) -> Statements:
+        """Everything."""
+        out, seen = self.out, self.seen
+        capture = self.capture()
+        performer, *_ = [
+            self.performance(each, number) for number, each in enumerate((seen.agent, *seen.others))
+        ]
+        rate_hz = facts.rate_of(seen.facts, frames=seen.frames, duration_s=seen.duration_s)
+        contacts = facts.held_contacts(seen, rate_hz)
+        world = facts.Scene(self.bodies, self.agents, rate_hz, contacts)
+        pars.complex_par(out, seen, called)
+        base = shared.rule_base(out, seen.rules)
+        rules = {each.name: shared.rule(out, each) for each in seen.naming}
+        for upar in seen.upars:
+            pars.upar(out, upar)
+        properties: PropertyValues = {
+            LABEL: seen.capture,
+            CAPAR.capture: capture,
+            USED: [capture, base],
+            ASSOCIATED: list(self.agents.values()),
+            OF_INTEREST: list(self.objects.values()),
+            CAPAR.ruleBase: base,
+            CAPAR.profile: seen.profile,
+            CAPAR.version: seen.version,
+            CAPAR.identity: identity(seen),
+            CAPAR.performer: performer,
+            CAPAR.agent: self.agents[seen.agent.name],
+            CAPAR.object: list(self.objects.values()),
+            CAPAR.link: list(self.links.values()),
+            CAPAR.segment: [
+                self.segment(each, len(link.segments), rules)
+                for link in seen.links
+                for each in link.segments
+            ],
+            CAPAR.jointAction: self.joint_actions(),
+            CAPAR.fact: facts.facts(out, seen.facts, world),
+            CAPAR.location: self.locations(),
+            CAPAR.guide: self.guides(),
+            CAPAR.style: self.styles(),
+            CAPAR.notice: [
+                self.add(
+                    CAPAR.Notice,
+                    "notice",
+                    index,
+                    {CAPAR.noticeCode: each.code, CAPAR.message: each.message},
+                )
+                for index, each in enumerate(seen.notices)
+            ],
+            CAPAR.calibration: self.calibration(),
+        }
+        for each in seen.relations:
+            node, other = (pars.segment_node(self.about, *key) for key in (each.segment, each.other))
+            out.add(node, (), {RELATIONS[each.kind]: other})
+        pars.ipars(out, seen, self.agents, self.objects)
+        for track in seen.tracks:
+            for body in self.bodies(track.body):
+                out.add(body, (), {CAPAR.track: statements.track(track)})
+        out.add(self.about, (CAPAR.Observation,), properties)
+        return out
+
+    def bodies(self, name: str) -> list[NamedNode]:
+        """The tag object and the link of a name, which are one body; else a sensor."""
+        found = [each[name] for each in (self.objects, self.links) if name in each]
+        return found or [self.add(CAPAR.Sensor, "sensor", name, {LABEL: name, CAPAR.name: name})]
+
+    def known(self, things: Iterable[str]) -> list[NamedNode]:
+        """The objects among things."""
+        return [self.objects[each] for each in things if each in self.objects]
+
+    def performer(self, ee: str) -> NamedNode:
+        """Whose end-effector it is."""
+        return self.agents[self.seen.performer(ee)]
+
+    def calibration(self) -> Literal | None:
+        """What was decided for the whole recording, thresholds included, as JSON."""
+        if self.seen.calibration is None:
+            return None
+        text = json.dumps(document(self.seen.calibration), separators=(",", ":"))
+        return Literal(text, datatype=JSON)
+
+    def capture(self) -> NamedNode:
+        """The capture with the files that it was read from."""
+        seen = self.seen
+        files = [
+            self.add(
+                CAPAR.SourceFile,
+                "source",
+                index,
+                {
+                    CAPAR.filePath: each.path,
+                    CAPAR.fileFormat: each.format,
+                    CAPAR.sha256: each.sha256,
+                },
+            )
+            for index, each in enumerate(seen.sources)
+        ]
+        recorded = recorded_at(seen.sources)
+        of_day = NamedNode(XSD + ("dateTime" if "T" in recorded else "date"))
+        properties: PropertyValues = {
+            LABEL: seen.capture,
+            CAPAR.name: seen.capture,
+            CAPAR.frames: seen.frames,
+            CAPAR.rate: float(seen.rate_hz),
+            CAPAR.duration: float(seen.duration_s),
+            CAPAR.recordedAt: Literal(recorded, datatype=of_day) if recorded else None,
+            DERIVED: files,
+        }
+        return self.out.add(names.part(self.about, "capture"), (CAPAR.Capture,), properties)
+
+    def agent(self, name: str) -> NamedNode:
+        """An agent; one without a name belongs to the capture alone."""
+        capture = self.seen.capture
+        unnamed = name == UNNAMED
+        return self.out.share(
+            names.shared("agent", name, *([capture] if unnamed else [])),
+            (CAPAR.Agent,),
+            {LABEL: f"{UNNAMED} of {capture}" if unnamed else name, CAPAR.name: name},
         )
-        for index, each in enumerate(observation.notices)
-    ]
+
+    def performance(self, agent: "Agent", number: int) -> NamedNode:
+        """An agent in this capture, with its kind and its measures there."""
+        node = names.part(self.about, "performer", *([number] if number else []))
+        measures = [
+            self.out.add(
+                names.part(node, "measure", name),
+                (CAPAR.Measure,),
+                {CAPAR.name: name, CAPAR.value: float(agent.measures[name])},
+            )
+            for name in sorted(agent.measures)
+        ]
+        properties: PropertyValues = {
+            CAPAR.agent: self.agents[agent.name],
+            CAPAR.kind: shared.kind(self.out, agent.kind),
+            CAPAR.measure: measures,
+        }
+        return self.out.add(node, (CAPAR.Performer,), properties)
+
+    def object(self, seen: "ObservedObject") -> NamedNode:
+        """A tag object with its site, and the states in which it began to move alone."""
+        node = names.part(self.about, "object", seen.name)
+        states = [
+            self.out.add(names.part(node, "state", number), (CAPAR.StateSpace,), self.state(force))
+            for number, force in enumerate(self.seen.forces)
+            if force.object == seen.name
+        ]
+        site: PropertyValues = {
+            CAPAR.position: statements.vector(seen.position_m),
+            CAPAR.orientation: statements.vector(seen.orientation),
+        }
+        properties: PropertyValues = {
+            LABEL: seen.name,
+            CAPAR.name: seen.name,
+            CAPAR.kind: shared.kind(self.out, kind_of(seen)),
+            CAPAR.tag: TAGS[seen.tag],
+            CAPAR.size: statements.vector(seen.size_m),
+            CAPAR.shape: seen.shape,
+            CAPAR.assumedFrom: seen.assumed,
+            CAPAR.coordinateSystem: self.out.add(names.part(node, "site"), (CAPAR.Site,), site),
+            CAPAR.state: states,
+        }
+        return self.out.add(node, (CAPAR.TagObject,), properties)
+
+    def state(self, force: "ForceStyle") -> PropertyValues:
+        """The state in which a thing began to move on alone (thesis Fig 4.13)."""
+        thesis = self.seen.profile == THESIS
+        damping = force.thesis_damping if thesis else force.damping_per_s
+        return {
+            CAPAR.position: statements.vector(force.position_m),
+            CAPAR.velocity: statements.vector(force.velocity_mps),
+            # The damping along z is taken for zero (thesis 3.4.3.4).
+            CAPAR.dampingForce: statements.vector((*damping, 0.0)) if damping else None,
+            CAPAR.restitution: force.bounce if force.restitution is None else force.restitution,
+        }
+
+    def segment(self, seen: "Segment", count: int, rules: Mapping[str, NamedNode]) -> NamedNode:
+        """A segment of a link of so many."""
+        out, after = self.out, seen.index + 1
+        node = pars.segment_node(self.about, seen.ee, seen.index)
+        follows = pars.segment_node(self.about, seen.ee, after) if after < count else None
+        action, general = shared.action(out, seen.name), shared.actions(out, seen.general)
+        if action is not None and general:
+            out.add(action, (), {CAPAR.kindOf: general, BROADER: general})
+        properties: PropertyValues = {
+            LABEL: f"{seen.ee} {seen.index}: {seen.name}",
+            CAPAR.ofLink: self.links[seen.ee],
+            CAPAR.ee: seen.ee,
+            CAPAR.index: seen.index,
+            CAPAR.address: str(SegmentAddress(seen.ee, seen.index, self.seen.capture)),
+            CAPAR.firstFrame: seen.first,
+            CAPAR.lastFrame: seen.last,
+            CAPAR.start: float(seen.start_s),
+            CAPAR.end: float(seen.end_s),
+            CAPAR.duration: float(seen.end_s - seen.start_s),
+            CAPAR.action: action,
+            CAPAR.namedBy: rules.get(seen.name),
+            CAPAR.general: " ".join(seen.general),
+            CAPAR.specialises: general,
+            CAPAR.candidate: shared.actions(out, seen.candidates),
+            CAPAR.failedAt: seen.level,
+            CAPAR.possesses: seen.possessed,
+            CAPAR.objects: " ".join(seen.objects),
+            CAPAR.object: self.known(seen.objects),
+            CAPAR.dominant: self.known(seen.objects[:1]),
+            CAPAR.subordinate: self.known(seen.objects[1:]),
+            CAPAR.features: shared.features(out, seen.features),
+            CAPAR.beginsWith: self.borders(node, "begin", seen.begins),
+            CAPAR.endsWith: self.borders(node, "end", seen.ends),
+            CAPAR.placement: [
+                out.add(
+                    names.part(node, "placement", index),
+                    (CAPAR.Placement,),
+                    {
+                        CAPAR.preposition: preposition,
+                        CAPAR.body: self.bodies(body),
+                        CAPAR.other: self.bodies(other),
+                    },
+                )
+                for index, (preposition, body, other) in enumerate(seen.prepositions)
+            ],
+            CAPAR.look: [
+                out.add(
+                    names.part(node, "look", index),
+                    (CAPAR.Look,),
+                    {CAPAR.seen: self.objects[looked_at], CAPAR.when: when},
+                )
+                for index, (looked_at, when) in enumerate(seen.looks)
+                if looked_at in self.objects
+            ],
+            CAPAR.purpose: seen.purpose,
+            CAPAR.next: follows,
+            MEETS: follows,
+            GENERATED: self.about,
+        }
+        kinds = (CAPAR.Segment,) if seen.known else (CAPAR.Segment, CAPAR.UnknownSegment)
+        return out.add(node, kinds, properties)
+
+    def borders(self, of: NamedNode, where: str, borders: "tuple[Border, ...]") -> list[NamedNode]:
+        """What happens at the begin or at the end of a segment."""
+        return [
+            self.out.add(
+                names.part(of, where, index),
+                (CAPAR.Border,),
+                {
+                    CAPAR.index: index,
+                    CAPAR.borderKind: border_kind(each.kind),
+                    CAPAR.body: self.bodies(each.body) if each.body else None,
+                    CAPAR.other: self.bodies(each.other) if each.other else None,
+                },
+            )
+            for index, each in enumerate(borders)
+        ]
+
+    def joint_actions(self) -> list[NamedNode]:
+        """What several end-effectors did with one object as one action, in order of time."""
+        return [
+            self.add(
+                CAPAR.JointAction,
+                "joint",
+                index,
+                {
+                    LABEL: f"{', '.join(seen.who)}: {seen.name}",
+                    CAPAR.index: index,
+                    CAPAR.action: shared.action(self.out, seen.name),
+                    CAPAR.name: seen.name,
+                    CAPAR.effectors: " ".join(seen.who),
+                    CAPAR.objects: " ".join(seen.objects),
+                    CAPAR.dominant: self.known(seen.objects[:1]),
+                    CAPAR.object: self.known(seen.objects),
+                    CAPAR.standsFor: [
+                        pars.segment_node(self.about, ee, number)
+                        for ee, number in zip(seen.ees, seen.segments, strict=True)
+                    ],
+                    CAPAR.firstFrame: seen.first,
+                    CAPAR.lastFrame: seen.last,
+                    CAPAR.start: float(seen.start_s),
+                    CAPAR.end: float(seen.end_s),
+                    CAPAR.duration: float(seen.end_s - seen.start_s),
+                    GENERATED: self.about,
+                },
+            )
+            for index, seen in enumerate(self.seen.joint)
+        ]
+
+    def kind_named(self, name: str) -> NamedNode | None:
+        """The kind of the object of a name."""
+        return shared.kind(self.out, self.kinds.get(name, name)) if name else None
+
+    def locations(self) -> list[NamedNode]:
+        """Constraint locations, with the kinds of objects that each is kept with."""
+        ended = {
+            (each.ee, each.last, each.name): pars.segment_node(self.about, each.ee, each.index)
+            for each in self.seen.segments
+        }
+        return [
+            self.add(
+                CAPAR.ConstraintLocation,
+                "location",
+                index,
+                {
+                    CAPAR.index: index,
+                    CAPAR.agent: self.performer(value.ee),
+                    CAPAR.ofSegment: ended.get((value.ee, value.frame, value.action)),
+                    CAPAR.ee: value.ee,
+                    CAPAR.ofAction: shared.action(self.out, value.action),
+                    CAPAR.actionName: value.action,
+                    CAPAR.purpose: value.purpose,
+                    CAPAR.side: value.side,
+                    CAPAR.frame: value.frame,
+                    CAPAR.dominant: self.objects.get(value.dominant),
+                    CAPAR.dominantKind: self.kind_named(value.dominant) if value.ee_nlt else None,
+                    CAPAR.goal: self.objects.get(value.goal),
+                    CAPAR.goalKind: self.kind_named(value.goal),
+                    CAPAR.seen: self.objects.get(value.seen),
+                    CAPAR.seenKind: self.kind_named(value.seen),
+                    CAPAR.eeNlt: _nlt(value.ee_nlt),
+                    CAPAR.goalNlt: _nlt(value.goal_nlt),
+                    CAPAR.vNlt: _nlt(value.v_nlt),
+                    GENERATED: self.about,
+                },
+            )
+            for index, value in enumerate(self.seen.locations)
+        ]
+
+    def guides(self) -> list[NamedNode]:
+        """Hinges and rails, with the kinds of objects that each is kept with."""
+        return [
+            self.add(
+                CAPAR.Guide,
+                "guide",
+                each.object,
+                {
+                    CAPAR.guideKind: each.kind,
+                    CAPAR.dominant: self.objects[each.object],
+                    CAPAR.dominantKind: self.kind_named(each.object),
+                    CAPAR.goal: self.objects[each.base],
+                    CAPAR.goalKind: self.kind_named(each.base),
+                    CAPAR.eeNlt: statements.nlt(each.object_nlt),
+                    CAPAR.goalNlt: statements.nlt(each.base_nlt),
+                    CAPAR.opened: each.opened,
+                    CAPAR.residual: each.residual_m,
+                    GENERATED: self.about,
+                },
+            )
+            for each in self.seen.guides
+        ]
+
+    def styles(self) -> list[NamedNode]:
+        """Styles of whoever performed."""
+        return [
+            self.add(
+                CAPAR.AgentStyle,
+                "style",
+                index,
+                {
+                    CAPAR.index: index,
+                    CAPAR.agent: self.performer(value.ee),
+                    CAPAR.ofAction: shared.action(self.out, value.action),
+                    CAPAR.actionName: value.action,
+                    CAPAR.purpose: value.purpose,
+                    CAPAR.ee: value.ee,
+                    CAPAR.velStyle: statements.vector(value.velocity),
+                    CAPAR.pathStyle: statements.path(value.path) if value.path else None,
+                    GENERATED: self.about,
+                },
+            )
+            for index, value in enumerate(self.seen.styles)
+        ]
+
+
+def _nlt(value: "Nlt | None") -> Literal | None:
+    return statements.nlt(value) if value else None
+
+
+def border_kind(word: str) -> NamedNode:
+    """What happens at a border, by its word.
+
+    Raises:
+        UnknownNameError: Nothing of that name may happen there.
+    """
+    if word not in BORDER_KINDS:
+        raise UnknownNameError("kind of border", word, BORDER_KINDS)
+    return BORDER_KINDS[word]
+
+
+def run(observation: "Observation") -> list[Quad]:
+    """The run that ends now on this computer: its time, the version and the files as they are."""
+    out = Statements(names.GRAPHS["runs"])
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    properties: dict[NamedNode, Any] = {
+        LABEL: f"run of {observation.capture}",
+        CAPAR.ofObservation: names.observation(observation.capture),
+        ENDED: Literal(now, datatype=NamedNode(XSD + "dateTime")),
+        CAPAR.version: observation.version,
+        CAPAR.host: platform.node(),
+        CAPAR.readFrom: [Literal(os.path.expandvars(each.path)) for each in observation.sources],
+    }
+    out.add(names.shared("run", observation.capture), (CAPAR.Run,), properties)
+    return out.quads
+
+
+def run_removal(graph: NamedNode) -> str:
+    """The update that forgets the run of an observation."""
+    node = names.shared("run", names.observation_name(graph))
+    return f"DELETE WHERE {{ GRAPH {names.GRAPHS['runs']} {{ {node} ?property ?value }} }}"

@@ -14,8 +14,7 @@ from kb.lexicon.rdf_wordnet import wordnet_triples
 from kb.lexicon.tables import FOLDER
 from kb.lexicon.verbnet import Member, VerbClass
 from kb.lexicon.wordnet import WordNet, wordnet
-from kb.store.embedded import EmbeddedStore
-from kb.store.stores import Store
+from kb.store.stores import EmbeddedStore, Store
 from ontology import CAPAR
 
 BATCH = 20_000

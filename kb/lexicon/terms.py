@@ -7,7 +7,7 @@ from urllib.parse import quote
 from pyoxigraph import Literal, NamedNode, Triple
 
 from ontology import DATA, PREFIXES
-from ontology.vocabularies import RDF, RDFS, XSD
+from ontology.namespace import RDF, RDFS, XSD
 
 ONTOLEX = PREFIXES["ontolex"]
 SKOS = PREFIXES["skos"]

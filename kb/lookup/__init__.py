@@ -1,1 +1,1 @@
-"""What the Actionary's methods do, one file a concern; each asks or changes a store."""
+"""What an Actionary knows: observations, actions, agents, objects, places and styles."""

@@ -1,22 +1,137 @@
-"""Constraint locations by kind of object, action, purpose and side (thesis 4.4.2.2)."""
+"""Constraint locations and styles by kind of object, agent, action and side (thesis 4.4.2)."""
 
 from dataclasses import dataclass, replace
 
 from pyoxigraph import Literal, NamedNode
 
 from capar.model.locations import ConstraintLocation
-from capar.model.par import Nlt
-from kb.findings import FoundLocation
-from kb.lookup import kinds
+from capar.model.par import Nlt, Style
+from kb.lookup.agents import Agents
 from kb.store import names
-from kb.store.answers import Found
-from kb.store.literals import nlt_of
 from kb.store.sparql import fill
-from kb.store.stores import Store
+from kb.store.statements import nlt_of, numbers, path_of
 from ontology import CAPAR
 
 OTHER = {"right": "left", "left": "right"}
 """The other side of the body."""
+
+
+@dataclass(frozen=True, slots=True)
+class FoundLocation:
+    """A constraint location, and how it was found."""
+
+    location: ConstraintLocation
+    kind: str
+    """The kind of object that it is kept with."""
+
+    observation: str
+    agent: str
+    mirrored: bool
+    """Whether it was observed on the other side of the body."""
+
+    inherited: bool
+    """Whether it is kept with a more general kind than was asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class FoundStyle:
+    """A style, and in which observation it was seen."""
+
+    style: Style
+    agent: str
+    observation: str
+
+
+class Knowledge(Agents):
+    """All lookups over a store."""
+
+    def locations(
+        self,
+        kind: str,
+        *,
+        action: str | None = None,
+        purpose: str | None = None,
+        side: str | None = None,
+    ) -> tuple[FoundLocation, ...]:
+        """Constraint locations for a kind of object, best first.
+
+        Those of the kind itself stand before those of more general kinds, those of the side
+        before those mirrored from the other one; then by observation.
+        """
+        return self._locations(kind, action=action, purpose=purpose, side=side)
+
+    def location(
+        self, kind: str, *, action: str, purpose: str | None = None, side: str | None = None
+    ) -> ConstraintLocation | None:
+        """The best constraint location for a kind of object, mirrored if need be."""
+        found = self._locations(kind, action=action, purpose=purpose, side=side, most=1)
+        return found[0].location if found else None
+
+    def _locations(
+        self,
+        kind: str,
+        *,
+        action: str | None,
+        purpose: str | None,
+        side: str | None,
+        most: int | None = None,
+    ) -> tuple[FoundLocation, ...]:
+        order = self.kinds_above(kind)
+        wanted = {CAPAR.actionName: action, CAPAR.purpose: purpose}
+        filters = [
+            f"?place {p} {Literal(word)} ." for p, word in wanted.items() if word is not None
+        ]
+        nodes = " ".join(str(names.shared("kind", each)) for each in order)
+        nearest: dict[str, tuple[int, bool, str]] = {}
+        for of, place, on in self.store.ask(
+            fill(_RANK, kinds=nodes, filters="\n  ".join(filters))
+        ).rows:
+            assert isinstance(of, NamedNode) and isinstance(on, Literal)
+            mirror = side not in {None, on.value}
+            if mirror and OTHER.get(on.value) != side:
+                continue
+            word = names.last_word(of)
+            rank = (order.index(word), mirror, word)
+            nearest[str(place)] = min(rank, nearest.get(str(place), rank))
+        best = sorted(nearest, key=lambda place: (*nearest[place][:2], place))[:most]
+        if not best:
+            return ()
+        answer = self.store.ask(fill(_DETAIL, places=" ".join(best)))
+        details = {
+            str(row[0]): text[1:] for row, text in zip(answer.rows, answer.texts(), strict=True)
+        }
+        return tuple(_found_location(details[e], *nearest[e][1:], kind) for e in best)
+
+    def styles(
+        self,
+        *,
+        agent: str | None = None,
+        action: str | None = None,
+        purpose: str | None = None,
+        ee: str | None = None,
+    ) -> tuple[FoundStyle, ...]:
+        """Styles that fit, by observation and in the order in which they were seen there."""
+        wanted = {
+            f"{CAPAR.agent}/{CAPAR.name}": agent,
+            f"{CAPAR.actionName}": action,
+            f"{CAPAR.purpose}": purpose,
+            f"{CAPAR.ee}": ee,
+        }
+        filters = [f"?style {path} {Literal(word)} ." for path, word in wanted.items() if word]
+        found = []
+        for row in self.store.ask(fill(_STYLES, filters="\n  ".join(filters))).texts():
+            who, observation, index, name, aim, with_, velocity, points = row
+            style = Style(name, aim, with_, numbers(velocity), path_of(points))
+            found.append(((observation, int(index)), FoundStyle(style, who, observation)))
+        return tuple(each for _, each in sorted(found, key=lambda each: each[0]))
+
+    def style(
+        self, agent: str, *, action: str, purpose: str | None = None, ee: str | None = None
+    ) -> Style | None:
+        """An agent's style of doing an action, from the first observation by name."""
+        found = self.styles(agent=agent, action=action, purpose=purpose, ee=ee)
+        return found[0].style if found else None
+
 
 _RANK = f"""SELECT DISTINCT ?kind ?place ?side
 WHERE {{
@@ -47,59 +162,23 @@ WHERE {{
 }}"""
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class _Ranked:
-    """A place by how well it fits: less is better."""
-
-    distance: int
-    mirrored: bool
-    place: str
-    kind: str
-
-
-def find(
-    store: Store,
-    kind: str,
-    *,
-    action: str | None,
-    purpose: str | None,
-    side: str | None,
-    most: int | None = None,
-) -> tuple[FoundLocation, ...]:
-    """Constraint locations that fit, best first, and so many at most."""
-    order = kinds.above(store, kind)
-    filters = []
-    if action is not None:
-        filters.append(f"?place {CAPAR.actionName} {Literal(action)} .")
-    if purpose is not None:
-        filters.append(f"?place {CAPAR.purpose} {Literal(purpose)} .")
-    nodes = " ".join(str(names.shared("kind", each)) for each in order)
-    rows = store.ask(fill(_RANK, kinds=nodes, filters="\n  ".join(filters))).rows
-    ranked = [each for row in rows if (each := _ranked(row, order, side)) is not None]
-    nearest = {each.place: each for each in sorted(ranked, reverse=True)}
-    best = sorted(nearest.values())[:most]
-    if not best:
-        return ()
-    places = " ".join(each.place for each in best)
-    details = {str(row[0]): row[1:] for row in store.ask(fill(_DETAIL, places=places)).rows}
-    return tuple(_found(details[each.place], each, kind) for each in best)
+_STYLES = f"""SELECT ?agent ?observation ?index ?action ?purpose ?ee ?velocity ?path
+WHERE {{
+  @filters@
+  ?style a {CAPAR.AgentStyle} ;
+    {CAPAR.agent}/{CAPAR.name} ?agent ;
+    {CAPAR.index} ?index ;
+    {CAPAR.actionName} ?action ;
+    {CAPAR.ee} ?ee .
+  ?in {CAPAR.style} ?style ;
+    {CAPAR.capture}/{CAPAR.name} ?observation .
+  OPTIONAL {{ ?style {CAPAR.purpose} ?purpose }}
+  OPTIONAL {{ ?style {CAPAR.velStyle} ?velocity }}
+  OPTIONAL {{ ?style {CAPAR.pathStyle} ?path }}
+}}"""
 
 
-def _ranked(row: tuple[Found, ...], order: tuple[str, ...], side: str | None) -> _Ranked | None:
-    """How well a place fits; nothing if it was made with neither the side nor its other one."""
-    kind, place, on = row
-    if not isinstance(kind, NamedNode) or not isinstance(on, Literal):
-        return None
-    word = names.last_word(kind)
-    if side in {None, on.value}:
-        return _Ranked(order.index(word), False, str(place), word)
-    return (
-        _Ranked(order.index(word), True, str(place), word) if OTHER.get(on.value) == side else None
-    )
-
-
-def _found(row: tuple[Found, ...], ranked: _Ranked, asked: str) -> FoundLocation:
-    text = [each.value if isinstance(each, Literal) else "" for each in row]
+def _found_location(text: list[str], mirror: bool, kind: str, asked: str) -> FoundLocation:
     observation, agent, action, purpose, ee, on, frame, dominant, goal, held, at, seen, view = text
     location = ConstraintLocation(
         action=action,
@@ -115,12 +194,12 @@ def _found(row: tuple[Found, ...], ranked: _Ranked, asked: str) -> FoundLocation
         v_nlt=_nlt(view),
     )
     return FoundLocation(
-        location=mirrored(location) if ranked.mirrored else location,
-        kind=ranked.kind,
+        location=mirrored(location) if mirror else location,
+        kind=kind,
         observation=observation,
         agent=agent,
-        mirrored=ranked.mirrored,
-        inherited=ranked.kind != asked,
+        mirrored=mirror,
+        inherited=kind != asked,
     )
 
 

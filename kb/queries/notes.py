@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from pyoxigraph import Literal
 
 from kb.queries.questions import Question, meant
-from kb.store import literals, sparql
+from kb.store import sparql, statements
 
 if TYPE_CHECKING:
     from kb.store.answers import Answer
@@ -106,7 +106,7 @@ SELECT DISTINCT ?name ?track {{
 }} ORDER BY ?name"""
     for name, track in store.ask(sparql.complete(query)).rows:
         if isinstance(name, Literal) and isinstance(track, Literal):
-            lost_s = literals.track_of(track.value).lost_around(time_s)
+            lost_s = statements.track_of(track.value).lost_around(time_s)
             if lost_s is not None:
                 yield (
                     f"{name.value!r} is lost from {lost_s[0]:.2f} to {lost_s[1]:.2f} s: what is "

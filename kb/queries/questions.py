@@ -11,8 +11,8 @@ from pyoxigraph import Literal, NamedNode
 
 from capar.model.errors import CaparError, UnknownNameError
 from kb.queries.filters import FILTERS, filtered, filters_of, node, unset
-from kb.store import literals, sparql
-from ontology.vocabularies import RELATIONS
+from kb.store import sparql, statements
+from ontology.namespace import RELATIONS
 
 if TYPE_CHECKING:
     from kb.store.stores import Store
@@ -249,7 +249,7 @@ def _check_seen(store: "Store", capture: str, body: str, time_s: float) -> None:
         f"?of capar:name|capar:ee {Literal(body)} ; capar:track ?name",
     )
     for text in tracks:
-        lost_s = literals.track_of(text).lost_around(time_s)
+        lost_s = statements.track_of(text).lost_around(time_s)
         if lost_s is not None:
             raise CaparError(
                 f"{store.place}: where {body!r} was at {time_s:g} s is not known: "

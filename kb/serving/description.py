@@ -5,7 +5,7 @@ from html import escape
 from typing import Any
 
 from kb.queries.questions import Parameter, Question, questions
-from kb.store.schema import SCHEMA
+from kb.store.updates import SCHEMA
 
 _KINDS = {"text": "string", "number": "number"}
 

@@ -16,7 +16,7 @@ from pyoxigraph import (
 
 from kb.serving.messages import RefusedError
 from kb.store.answers import Answer, Found
-from ontology.vocabularies import XSD
+from ontology.namespace import XSD
 
 RESULTS = {
     "application/sparql-results+json": QueryResultsFormat.JSON,

@@ -21,7 +21,7 @@ from pyoxigraph import (
 )
 
 from ontology import PREFIXES
-from ontology.vocabularies import XSD
+from ontology.namespace import XSD
 
 Found: TypeAlias = NamedNode | BlankNode | Literal | Triple | None
 Plain: TypeAlias = str | int | float | bool | None
@@ -48,6 +48,14 @@ class Answer:
         """Each row by variable, its terms as Python's own values."""
         for row in self.rows:
             yield {name: plain(each) for name, each in zip(self.variables, row, strict=True)}
+
+    def texts(self) -> list[list[str]]:
+        """Each row as the texts of its literals, empty for what is none."""
+        return [list(map(_text, row)) for row in self.rows]
+
+
+def _text(term: Found) -> str:
+    return term.value if isinstance(term, Literal) else ""
 
 
 def plain(term: Found) -> Plain:

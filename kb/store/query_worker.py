@@ -12,8 +12,7 @@ from pyoxigraph import Store as Oxigraph
 from capar.model.errors import UnknownNameError
 from kb.errors import QueryError, StoreError
 from kb.store import answers, sparql
-from kb.store.embedded import evaluated
-from kb.store.readonly_folder import read
+from kb.store.stores import evaluated, read
 
 LONGEST = 160
 """After how many letters a parser's message is cut."""
@@ -54,7 +53,7 @@ def user_message(problem: str) -> str:
 
 def _ask(request: dict[str, str], source: BinaryIO) -> tuple[str, bytes]:
     if request["address"]:
-        from kb.store.remote import post_query, query_copy
+        from kb.store.stores import post_query, query_copy
 
         if sparql.opens_tracks(request["query"]):
             return answers.encode(query_copy(request["address"], request["query"]))

@@ -12,7 +12,7 @@ from jaxtyping import Float
 from pyoxigraph import BlankNode, Literal, NamedNode, Triple
 from pyoxigraph import Store as Oxigraph
 
-from kb.store import literals, names
+from kb.store import names, statements
 from ontology import BASE, CAPAR
 
 Place: TypeAlias = Float[np.ndarray, "3"]
@@ -72,7 +72,7 @@ class _Tracks:
     def position(self, observation: Any, body: Any, time: Any) -> Literal | None:
         track, at = self._track(observation, body), _seconds(time)
         place = None if track is None or at is None else track.at(at)
-        return None if place is None or np.isnan(place).any() else literals.vector(place)
+        return None if place is None or np.isnan(place).any() else statements.vector(place)
 
     def speed(self, observation: Any, body: Any, time: Any) -> Literal | None:
         track, at = self._track(observation, body), _seconds(time)
@@ -125,7 +125,7 @@ class _Tracks:
         for node in nodes:
             for quad in self._store.quads_for_pattern(node, CAPAR.track, None, observation):
                 assert isinstance(quad.object, Literal)
-                sampled = literals.track_of(quad.object.value)
+                sampled = statements.track_of(quad.object.value)
                 return Track(sampled.step_s, sampled.positions)
         return None
 

@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 from capar.cli import app
 from kb.actionary import Actionary
 from kb.errors import DamagedError, StoreError
-from kb.store import readonly_folder
-from kb.store.embedded import DATA_FOLDER
+from kb.store import stores
+from kb.store.stores import DATA_FOLDER
 
 DEMO = str(resources.files("capar") / "demo" / "drink_from_mug")
 RUNNER = CliRunner()
@@ -64,7 +64,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing writes beside these readers, so that they need not try again for long."""
-    monkeypatch.setattr(readonly_folder, "TRIES", 2)
+    monkeypatch.setattr(stores, "TRIES", 2)
 
 
 def chosen(place: Path, which: str) -> Path:

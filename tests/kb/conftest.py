@@ -16,7 +16,7 @@ from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
 from kb.errors import StoreError
-from kb.store.remote import RemoteStore
+from kb.store.stores import RemoteStore
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,7 @@ from capar.model.observation import Observation
 from capar.model.par import Nlt
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
-from kb.encode.run import ENDED
+from kb.encode.shared import ENDED
 from kb.errors import ExistsError, ShapeError
 from kb.store import names
 from kb.store_checks import check

@@ -16,9 +16,16 @@ from capar.model.errors import UnknownNameError
 from capar.model.observation import SegmentAddress
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from kb.actionary import Actionary
-from kb.corrected_links import corrected_links
-from kb.corrected_view import corrected
-from kb.corrections import Correction, Span, account, claims, correct, overlay
+from kb.corrections import (
+    Correction,
+    Span,
+    account,
+    claims,
+    correct,
+    corrected,
+    corrected_links,
+    overlay,
+)
 from kb.errors import CorrectionError
 from kb.language.describe import describe as described
 from kb.lexicon.evidence import seen_in

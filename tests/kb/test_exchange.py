@@ -14,11 +14,11 @@ from capar.model.errors import FileError, UnknownNameError
 from capar.model.observation import Border, Observation
 from capar.model.par import FeatureSet, Nlt, PathPoint
 from kb.actionary import Actionary
-from kb.encode.segments import BORDER_KINDS
+from kb.encode.observation import BORDER_KINDS
 from kb.errors import ShapeError
 from kb.exchange import FORMATS, bring_in, export, format_of, misplaced, read
-from kb.store import literals, names
-from kb.store.literals import LiteralError
+from kb.store import names, statements
+from kb.store.statements import LiteralError
 
 PREPOSITIONS = (("away from", "mug", "table"), ("on", "mug", "table"), ("up", "mug", "mug"))
 
@@ -185,7 +185,7 @@ finite = st.floats(allow_nan=False, allow_infinity=False)
 
 @given(st.lists(finite))
 def test_a_vector_keeps_every_bit(values: list[float]) -> None:
-    assert literals.numbers(literals.vector(values).value) == tuple(values)
+    assert statements.numbers(statements.vector(values).value) == tuple(values)
 
 
 @given(st.tuples(finite, finite, finite), st.tuples(finite, finite, finite, finite))
@@ -193,15 +193,15 @@ def test_an_nlt_keeps_every_bit(
     place: tuple[float, float, float], turn: tuple[float, float, float, float]
 ) -> None:
     value = Nlt(place, turn)
-    assert literals.nlt_of(literals.nlt(value).value) == value
+    assert statements.nlt_of(statements.nlt(value).value) == value
 
 
 @given(st.lists(st.builds(PathPoint, finite, st.tuples(finite, finite, finite))))
 def test_a_path_keeps_every_bit(points: list[PathPoint]) -> None:
-    assert literals.path_of(literals.path(points).value) == tuple(points)
+    assert statements.path_of(statements.path(points).value) == tuple(points)
 
 
 @pytest.mark.parametrize("text", ["1 2 3", "1 2 3 1 0 0 nan", "1 2 3 1 0 0 x", "1 2 3 1 0 0 inf"])
 def test_a_literal_that_is_no_nlt_is_refused(text: str) -> None:
     with pytest.raises(LiteralError):
-        literals.nlt_of(text)
+        statements.nlt_of(text)

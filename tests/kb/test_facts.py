@@ -28,8 +28,8 @@ from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
 from kb.encode import encode
-from kb.lookup.facts import facts, in_order
-from kb.store.shacl_validation import violations
+from kb.encode.facts import in_order, stored_facts
+from kb.store.validation import violations
 
 MADE = (drink_from_mug(), pick_up_with_both_hands(), with_unknown())
 
@@ -42,7 +42,7 @@ def drunk() -> Observation:
 def read_back(observation: Observation) -> tuple[Fact, ...]:
     actionary = Actionary.in_memory()
     actionary.add(observation)
-    return facts(actionary.store, observation.capture)
+    return stored_facts(actionary.store, observation.capture)
 
 
 def measured(observation: Observation) -> tuple[Fact, ...]:
@@ -86,7 +86,7 @@ def test_any_facts_come_back_exactly(stated: list[Fact], samples: list[Fact]) ->
     quads = encode(made).quads
     actionary = Actionary.in_memory()
     actionary.store.insert(quads)
-    assert facts(actionary.store, made.capture) == in_order([*stated, *samples])
+    assert stored_facts(actionary.store, made.capture) == in_order([*stated, *samples])
 
 
 def test_facts_have_frames_and_seconds_and_refer_to_bodies(drunk: Observation) -> None:

@@ -6,7 +6,7 @@ from observations import drink_from_mug, pick_up_with_both_hands
 
 from capar.model.facts import Moving, Touching
 from kb.actionary import Actionary
-from kb.encode.held_contacts import held_contacts, shared
+from kb.encode.facts import held_contacts, overlap_s
 from ontology import CAPAR
 
 times = st.lists(st.integers(0, 200), min_size=2, max_size=12, unique=True).map(sorted)
@@ -16,7 +16,7 @@ times = st.lists(st.integers(0, 200), min_size=2, max_size=12, unique=True).map(
 def test_the_time_shared_with_others_is_what_lies_in_both(ends: list[int], of: list[int]) -> None:
     spans = list(zip(ends[::2], ends[1::2], strict=False))
     counted = sum(any(a <= at < b for a, b in spans) for at in range(of[0], of[1]))
-    assert shared((of[0], of[1]), spans) == counted
+    assert overlap_s((of[0], of[1]), spans) == counted
 
 
 def test_only_contacts_of_end_effectors_tell_how_long_the_thing_is_held() -> None:

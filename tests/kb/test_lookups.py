@@ -14,7 +14,7 @@ from capar.model.par import FeatureSet, Ipar, Nlt, Upar
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
 from kb.errors import StoreError
-from kb.lookup.stored_pars import effective
+from kb.lookup.pars import effective
 
 
 def ordered(value: Ipar | Upar) -> Ipar | Upar:

@@ -9,7 +9,7 @@ from pyoxigraph import Store as Oxigraph
 
 from kb.actionary import Actionary
 from kb.errors import DamagedError
-from kb.store.embedded import DATA_FOLDER, EmbeddedStore
+from kb.store.stores import DATA_FOLDER, EmbeddedStore
 from kb.store_checks import check
 from ontology import CAPAR
 

@@ -6,8 +6,7 @@ from pyoxigraph import Literal, NamedNode, RdfFormat, Triple, parse
 
 from capar.model.errors import UnknownNameError
 from kb.actionary import Actionary
-from kb.exchange import FORMATS
-from kb.soma_episode import VOCABULARIES, episode, export_episode
+from kb.exchange import FORMATS, VOCABULARIES, episode, export_episode
 from kb.store.statements import TYPE
 
 NAME = "DrinkFromMug"

@@ -17,7 +17,7 @@ from kb.actionary import Actionary
 from kb.errors import QueryError
 from kb.queries.notes import notes
 from kb.queries.questions import check_known, question
-from kb.store.literals import LiteralError, track, track_of
+from kb.store.statements import LiteralError, track, track_of
 
 STEP_S = 0.02
 CLOCK = np.arange(0.0, 2.001, STEP_S)

@@ -19,7 +19,7 @@ from kb.encode import encode
 from kb.store.statements import TYPE
 from ontology import BASE, CAPAR
 from ontology.files import ontology
-from ontology.vocabularies import XSD
+from ontology.namespace import XSD
 
 JAR = os.environ.get("CAPAR_HERMIT", "")
 DATATYPE = NamedNode("http://www.w3.org/2000/01/rdf-schema#Datatype")

@@ -8,7 +8,7 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 from pyoxigraph import RdfFormat, Triple, parse
 
 from kb.encode import encode
-from kb.store.shacl_validation import rules, violations
+from kb.store.validation import rules, violations
 from kb.store_checks import by_shacl
 from ontology.files import shape_files
 

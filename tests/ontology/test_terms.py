@@ -12,12 +12,11 @@ import kb
 import ontology
 from capar.model.errors import UnknownNameError
 from capar.model.observation import Border
-from kb.encode import fact_terms
-from kb.encode.segments import BORDER_KINDS
-from kb.store.shacl_validation import rules
-from ontology import BASE, CAPAR, terms
+from kb.encode.observation import BORDER_KINDS
+from kb.store.validation import rules
+from ontology import BASE, CAPAR, fact_kinds, terms
 from ontology.files import closure, kinds, read, term_files
-from ontology.vocabularies import PREFIXES, RDF, RDFS
+from ontology.namespace import PREFIXES, RDF, RDFS
 
 LABEL = NamedNode(RDFS + "label")
 DEFINITION = NamedNode(PREFIXES["skos"] + "definition")
@@ -43,8 +42,7 @@ def test_the_closed_namespace_equals_the_files() -> None:
 
 
 def test_the_terms_of_kinds_of_facts_are_those_that_their_classes_declare() -> None:
-    assert (HERE / fact_terms.TURTLE).read_text("utf-8") == fact_terms.turtle()
-    assert (HERE / fact_terms.NAMES).read_text("utf-8") == fact_terms.module()
+    assert (HERE / fact_kinds.TURTLE).read_text("utf-8") == fact_kinds.turtle()
 
 
 def test_every_term_that_a_file_uses_is_stated() -> None:

@@ -20,7 +20,7 @@ from capar.pipelines.round_trips import observed_source
 from capar.regeneration.roles import AmbiguousError, Binding, Role, bind, roles_of
 from capar.regeneration.scenes import PlanError, Scene
 from kb import Actionary
-from kb.findings import Ability
+from kb.lookup.agents import Ability
 
 MUG = Role("mug", "mug", TagType.MOBILE, (), moved=True)
 TABLE = Role("table", "table", TagType.FIXED, ("mug",), moved=False)
