@@ -1,7 +1,6 @@
 """Ask the Actionary: questions, pictures of actions, checks, and an HTTP server."""
 
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeAlias
 
@@ -80,7 +79,7 @@ def query(
     text = _text(question, raw, given)
     _warn_of_unknown_terms(raw or "")
     from kb import Actionary
-    from kb.queries.questions import check_known
+    from kb.queries.questions import check_known, notes
     from kb.queries.questions import question as named
 
     with Actionary.open(actionary, read_only=True) as opened:
@@ -90,8 +89,11 @@ def query(
             check_known(store, named(question), given)
         _print(answer, chosen)
         if chosen == "table" and answer.variables:
-            for sentence in _remarks(store, answer, question, raw, text, given):
-                typer.echo(sentence, err=True)
+            said = notes(named(question), answer) if raw is None and answer.rows else []
+            for sentence in said:
+                typer.echo(f"note: {sentence}", err=True)
+            if not answer.rows:
+                typer.echo("nothing found", err=True)
 
 
 def _warn_of_unknown_terms(query: str) -> None:
@@ -99,33 +101,6 @@ def _warn_of_unknown_terms(query: str) -> None:
 
     for sentence in unknown_terms(query):
         typer.echo(f"warning: {sentence}", err=True)
-
-
-def _remarks(
-    store: "Store", answer: "Answer", question: str, raw: str | None, text: str, given: Given
-) -> Iterator[str]:
-    """What ought to be known beside the answer, or why there is none."""
-    from kb.queries.emptying_filters import emptying_filters
-    from kb.queries.notes import notes, notes_of_sparql
-    from kb.queries.questions import counted_segments
-    from kb.queries.questions import question as named
-
-    if answer.rows:
-        beside = (
-            notes(store, named(question), given, answer)
-            if raw is None
-            else notes_of_sparql(store, text, answer)
-        )
-        yield from (f"note: {sentence}" for sentence in beside)
-        return
-    yield f"nothing found among {counted_segments(store)}"
-    if raw is None:
-        why = list(emptying_filters(store, named(question), given))
-    else:
-        from kb.queries.empty_answers import hints  # half a second, for queries without answer
-
-        why = hints(store, text)
-    yield from (f"nothing found: {sentence}" for sentence in why)
 
 
 def _corrected(store: "Store") -> "Store":

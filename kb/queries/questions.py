@@ -1,84 +1,47 @@
-"""Named questions: each is a file of SPARQL whose first comments say what it asks and of what."""
+"""Named questions: each is a file of SPARQL whose first comments say what it asks and of what.
+
+A question that takes the shared filters says where, in a comment of its own: ``# filters
+?segment``, or another variable. Parameters and filters are described in ``parameters.toml``.
+"""
 
 import re
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pyoxigraph import Literal, NamedNode
 
 from capar.model.errors import CaparError, UnknownNameError
-from kb.queries.filters import FILTERS, filtered, filters_of, node, unset
-from kb.store import sparql, statements
-from ontology.namespace import RELATIONS
+from kb.store import names, sparql, statements
 
 if TYPE_CHECKING:
+    from kb.store.answers import Answer
     from kb.store.stores import Store
 
-_PARAMETER = re.compile(
-    r"(?P<name>\w+) \((?P<kind>text|number)"
-    r"(?:, (?:(?P<required>required)|default (?P<default>\w+)))?\): (?P<meaning>[^;]+)"
-)
-
-_OBJECT = ("object", "?of a capar:TagObject ; capar:name|(capar:kind/capar:isA/capar:name) ?name")
-_WHOLE = ("whole action", "?of a capar:Observation ; capar:name ?name")
-BEARERS = {
-    "address": ("segment", "?of a capar:Segment ; capar:address ?name"),
-    "action": (
-        "action",
-        "{ ?of a capar:Observation ; rdfs:label ?name } UNION { ?of a ?kind ; capar:name ?name "
-        "VALUES ?kind { capar:Action capar:Upar capar:JointAction capar:Observation } }",
-    ),
-    "arrangement": ("arrangement", "?of capar:arrangement ?name"),
-    "body": ("body", "?of capar:body/capar:name ?name"),
-    "capture": ("capture", "?of a capar:Capture ; capar:name ?name"),
-    "ee": ("end-effector", "?of a capar:Link ; capar:ee ?name"),
-    "effector": ("kind of end-effector", "?of a capar:Link ; capar:effectorType ?name"),
-    "first": _WHOLE,
-    "goal": _OBJECT,
-    "kind": (
-        "object or kind of object",
-        "?of capar:name ?name ; a ?bearer VALUES ?bearer { capar:ObjectKind capar:TagObject }",
-    ),
-    "lemma": ("verb", "?of a ontolex:Word ; rdfs:label ?word BIND(STR(?word) AS ?name)"),
-    "levin": ("class of Levin's", "?of a capar:LevinClass ; skos:notation ?name"),
-    "object": _OBJECT,
-    "observation": ("observation", "?of a capar:Observation ; rdfs:label ?name"),
-    "other": ("action", "?of a capar:Action ; capar:name ?name"),
-    "other_ee": ("end-effector", "?of a capar:Link ; capar:ee ?name"),
-    "other_effector": ("kind of end-effector", "?of a capar:Link ; capar:effectorType ?name"),
-    "other_side": ("side", "?of a capar:Link ; capar:side ?name"),
-    "performer": ("performer", "?of a capar:Agent ; capar:name|rdfs:label ?name"),
-    "preposition": ("preposition", "?of capar:preposition ?name"),
-    "purpose": ("purpose", "?of capar:purpose ?name"),
-    "relation": (
-        "relation of Allen's",
-        f"VALUES ?name {{ {' '.join(map(repr, (*RELATIONS, 'together')))} }}",
-    ),
-    "second": _WHOLE,
-    "side": ("side", "?of a capar:Link ; capar:side ?name"),
-}
-"""What each parameter that is a text names, and the pattern of those that bear such a name."""
-
-
-FEW = frozenset({"arrangement", "effector", "other_effector", "preposition", "relation", "side"})
-"""Parameters whose values are few enough to list all of them where one is not known."""
-
-SEVERAL = frozenset(
-    {
-        *("action", "arrangement", "body", "ee", "effector", "kind", "object", "other"),
-        *("other_ee", "other_effector", "preposition"),
-    }
-)
-"""Parameters that take several names with commas between them, of which one is enough."""
+_FOLDER = files("kb") / "queries"
+_DESCRIBED: Mapping[str, Any] = tomllib.loads((_FOLDER / "parameters.toml").read_text("utf-8"))
+PARAMETERS: Mapping[str, Mapping[str, Any]] = _DESCRIBED["parameters"]
+FILTERS: Mapping[str, Mapping[str, Any]] = _DESCRIBED["filters"]
 
 SYNONYMS = {("preposition", "inside"): "in", ("arrangement", "in"): "inside"}
 """Values by parameter and another word that people use for them."""
 
 OF_LEXICON = frozenset({"lemma", "levin"})
 """The parameters that only a loaded lexicon can answer."""
+
+NARROWING = frozenset({"capture", "address"})
+"""Filters that leave so few that the others are best tested on each of these."""
+
+_PARAMETER = re.compile(
+    r"(?P<name>\w+) \((?P<kind>text|number)"
+    r"(?:, (?:(?P<required>required)|default (?P<default>\w+)))?\): (?P<meaning>[^;]+)"
+)
+_MARK = re.compile(r"^ *# filters \?(\w+)$", re.MULTILINE)
+_NOTE = re.compile(r"^# Note: (.+)$", re.MULTILINE)
+_UNLESS = re.compile(r'^# Unless \?(\w+)(?: = "([^"]+)")?: (.+)$', re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,16 +77,24 @@ class Question:
             UnknownNameError: A parameter that the question has not; the message lists those it has.
             QuestionError: A required one is missing, or a number is none.
         """
-        names = [each.name for each in self.parameters]
+        own = [each.name for each in self.parameters]
         for name in given:
-            if name not in names:
-                raise UnknownNameError(f"parameter of the question {self.name!r}", name, names)
+            if name not in own:
+                raise UnknownNameError(f"parameter of the question {self.name!r}", name, own)
         values = {each.name: self._value(each, given) for each in self.parameters}
-        _check_span(self, values)
-        set_filters = filters_of(self.query)
-        query = filtered(self.query, {each: values[each] for each in set_filters if values[each]})
+        begin, end = (values.get(name, ()) for name in ("from", "until"))
+        if begin and end and float(begin[0].value) > float(end[0].value):
+            raise CaparError(
+                f"question {self.name!r}: from={begin[0].value} is after until={end[0].value}"
+            )
+        given_filters = {e: values[e] for e in filters_of(self.query) if values[e]}
+        query = _filtered(self.query, given_filters)
         for parameter in self.parameters:
-            query = _set(query, parameter, values[parameter.name])
+            terms = values[parameter.name]
+            if parameter.kind == "text":
+                actions = tuple(names.shared("action", each.value) for each in terms)
+                query = _stated(query, f"{parameter.name}_node", actions)
+            query = _stated(query, parameter.name, terms)
         return sparql.complete(query)
 
     def _value(self, parameter: Parameter, given: Mapping[str, object]) -> tuple[Literal, ...]:
@@ -141,18 +112,9 @@ class Question:
             raise QuestionError(self, parameter, text) from None
 
 
-def _check_span(asked: Question, values: Mapping[str, Sequence[Literal]]) -> None:
-    begin, end = (values.get(name, ()) for name in ("from", "until"))
-    if begin and end and float(begin[0].value) > float(end[0].value):
-        raise CaparError(
-            f"question {asked.name!r}: from={begin[0].value} is after until={end[0].value}; "
-            "what lies between them, or over one of them, would be found"
-        )
-
-
 def meant(parameter: str, text: str) -> list[str]:
     """The values that a text means for a parameter: several of some, the usual word for others."""
-    words = text.split(",") if parameter in SEVERAL else [text]
+    words = text.split(",") if PARAMETERS[parameter].get("several") else [text]
     return [SYNONYMS.get((parameter, word.strip()), word.strip()) for word in words]
 
 
@@ -169,26 +131,82 @@ class QuestionError(CaparError):
         )
 
 
-def _set(query: str, parameter: Parameter, values: tuple[Literal, ...]) -> str:
-    if parameter.kind == "text":
-        query = _stated(query, f"{parameter.name}_node", tuple(map(node, values)))
-    return _stated(query, parameter.name, values)
+def filters_of(query: str) -> tuple[str, ...]:
+    """The names of the filters that a query takes; what it has a variable for it sets itself."""
+    marked = set(_MARK.findall(query))
+    return tuple(
+        name
+        for name, each in FILTERS.items()
+        if marked & each["on"].keys()
+        and not any(_unset(variable) in query for variable in (name, f"{name}_node"))
+    )
+
+
+def _unset(variable: str) -> str:
+    """The line of a query whose variable may be given values."""
+    return f"VALUES ?{variable} {{ UNDEF }}"
 
 
 def _stated(query: str, variable: str, terms: Sequence[Literal | NamedNode]) -> str:
-    line = unset(variable)
+    line = _unset(variable)
     if len(terms) == 1 and variable.endswith("_node") and line in query:
         return query.replace(line, "").replace(f"?{variable}", str(terms[0]))
     stated = f"VALUES ?{variable} {{ {' '.join(map(str, terms))} }}"
     return query.replace(line, stated if terms else "")
 
 
+def _filtered(query: str, given: Mapping[str, Sequence[Literal]]) -> str:
+    """A query with the filters set for which there are values; one of several is enough."""
+    narrow = bool(given.keys() & NARROWING)
+    # Asked of both, a question is of one object in recordings: a kind is that object's.
+    of_an_object = set(_MARK.findall(query)) >= {"seen", "thing"}
+
+    def patterns(found: "re.Match[str]") -> str:
+        held = (
+            _filter(found[1], name, values, narrow=narrow)
+            for name, values in given.items()
+            if found[1] in FILTERS[name]["on"]
+            and (name != "kind" or (found[1] == "thing") == of_an_object)
+        )
+        return "\n".join(f"  {pattern}" for pattern in held)
+
+    return _MARK.sub(patterns, query)
+
+
+def _filter(of: str, name: str, values: Sequence[Literal], *, narrow: bool) -> str:
+    """A pattern with its values; what may fit in several ways still counts once.
+
+    Where another filter leaves few, each of them is tested, instead of finding all that fit: a
+    variable that is compared is bound last, a value that is written out is sought first.
+    """
+    stated = FILTERS[name]["on"][of]
+    pattern = stated.replace("@action@", "@value@")
+    terms: Sequence[Literal | NamedNode] = values
+    if pattern != stated:
+        terms = [names.shared("action", each.value) for each in values]
+    several = len(values) > 1 or "|" in pattern
+    if several and narrow:
+        tests = (f"EXISTS {{ {pattern.replace('@value@', str(value))} }}" for value in terms)
+        return f"FILTER({' || '.join(tests)})"
+    one = f"?f_one_{name}"
+    if narrow and FILTERS[name]["kind"] == "text" and name not in NARROWING:
+        return f"{pattern.replace('@value@', one)} FILTER({one} = {terms[0]})"
+    if not several:
+        return str(pattern.replace("@value@", str(terms[0])))
+    one_of = f"VALUES {one} {{ {' '.join(map(str, terms))} }}"
+    did, general, rest = pattern.partition("/capar:kindOf @value@")
+    if general:  # some actions are soon found, and then what is of one of them
+        done = f"?f_done_{name}"
+        few = f"{{ SELECT DISTINCT {done} {{ {one_of} {done} capar:kindOf {one} }} }}"
+        return f"{few} {did} {done}{rest}"
+    return f"{{ SELECT DISTINCT ?{of} {{ {one_of} {pattern.replace('@value@', one)} }} }}"
+
+
 @cache
 def questions() -> Mapping[str, Question]:
     """Every question by name, sorted."""
-    folder = files("kb") / "queries"
     found = sorted(
-        (each for each in folder.iterdir() if each.name.endswith(".rq")), key=lambda at: at.name
+        (each for each in _FOLDER.iterdir() if each.name.endswith(".rq")), key=lambda at: at.name
     )
     read = [_read(each.name.removesuffix(".rq"), each.read_text("utf-8")) for each in found]
     return {each.name: each for each in read}
@@ -205,6 +223,27 @@ def question(name: str) -> Question:
     return questions()[name]
 
 
+def _read(name: str, query: str) -> Question:
+    first, second, *_ = query.splitlines()
+    parameters = tuple(
+        Parameter(
+            each["name"],
+            each["kind"],
+            bool(each["required"]),
+            each["default"] or "",
+            each["meaning"].strip(),
+        )
+        for each in _PARAMETER.finditer(second)
+    )
+    own = {each.name for each in parameters}
+    shared = (each for each in filters_of(query) if each not in own)
+    filters = tuple(
+        Parameter(each, FILTERS[each]["kind"], False, "", FILTERS[each]["meaning"])
+        for each in shared
+    )
+    return Question(name, first.removeprefix("#").strip(), (*parameters, *filters), query)
+
+
 def check_known(store: "Store", asked: Question, given: Mapping[str, object]) -> None:
     """Check that what a question without answers asks about exists at all.
 
@@ -216,8 +255,8 @@ def check_known(store: "Store", asked: Question, given: Mapping[str, object]) ->
         asked_for = str(given.get(parameter.name) or "")
         if parameter.kind != "text" or not asked_for:
             continue
-        kind, pattern = BEARERS[parameter.name]
-        known = _texts(store, pattern)
+        kind = PARAMETERS[parameter.name]["noun"]
+        known = _texts(store, PARAMETERS[parameter.name]["known"])
         if not known and parameter.name in OF_LEXICON:
             raise CaparError(
                 f"{store.place}: no {kind} is known, as no lexicon is loaded; "
@@ -225,7 +264,7 @@ def check_known(store: "Store", asked: Question, given: Mapping[str, object]) ->
             )
         for value in meant(parameter.name, asked_for):
             if value not in known:
-                listed = parameter.name in FEW
+                listed = bool(PARAMETERS[parameter.name].get("listed"))
                 raise UnknownNameError(kind, value, known, where=store.place, listed=listed)
     if {"capture", "time"} <= given.keys():
         _check_time(store, str(given["capture"]), float(str(given["time"])))
@@ -257,40 +296,22 @@ def _check_seen(store: "Store", capture: str, body: str, time_s: float) -> None:
             )
 
 
-def counted_segments(store: "Store") -> str:
-    """How many segments are stored, of how many observations."""
-    query = """
-SELECT (COUNT(DISTINCT ?segment) AS ?segments) (COUNT(DISTINCT ?of) AS ?observations)
-{ ?of capar:segment ?segment }"""
-    ((segments, observations),) = store.ask(sparql.complete(query)).rows
-    return f"{_number(segments)} segments of {_number(observations)} observations"
-
-
-def _number(term: object) -> str:
-    return term.value if isinstance(term, Literal) else "0"
-
-
 def _texts(store: "Store", pattern: str) -> set[str]:
     query = sparql.complete(f"SELECT DISTINCT ?name WHERE {{ {pattern} }}")
     found = (row[0] for row in store.ask(query).rows)
     return {each.value for each in found if isinstance(each, Literal)}
 
 
-def _read(name: str, query: str) -> Question:
-    first, second, *_ = query.splitlines()
-    parameters = tuple(
-        Parameter(
-            each["name"],
-            each["kind"],
-            bool(each["required"]),
-            each["default"] or "",
-            each["meaning"].strip(),
-        )
-        for each in _PARAMETER.finditer(second)
-    )
-    own = {each.name for each in parameters}
-    shared = (each for each in filters_of(query) if each not in own)
-    filters = tuple(
-        Parameter(each, FILTERS[each].kind, False, "", FILTERS[each].meaning) for each in shared
-    )
-    return Question(name, first.removeprefix("#").strip(), (*parameters, *filters), query)
+def notes(asked: Question, answer: "Answer") -> list[str]:
+    """What a question's file says beside an answer.
+
+    ``# Note:`` always holds; ``# Unless ?recorded: ...`` where that column has no value in any
+    row, or not the one that is named.
+    """
+    said = _NOTE.findall(asked.query)
+    for column, value, text in _UNLESS.findall(asked.query):
+        at = answer.variables.index(column)
+        held = {term.value for row in answer.rows if isinstance(term := row[at], Literal)}
+        if value not in held if value else not held:
+            said.append(text)
+    return said
