@@ -177,7 +177,9 @@ class _Encoder:
             CAPAR.calibration: self.calibration(),
         }
         for each in seen.relations:
-            node, other = (pars.segment_node(self.about, *key) for key in (each.segment, each.other))
+            node, other = (
+                pars.segment_node(self.about, *key) for key in (each.segment, each.other)
+            )
             out.add(node, (), {RELATIONS[each.kind]: other})
         pars.ipars(out, seen, self.agents, self.objects)
         for track in seen.tracks:

@@ -14,7 +14,7 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 
 from capar.cli import main
 from kb.actionary import Actionary
-from kb.queries.questions import BEARERS, questions
+from kb.queries.questions import PARAMETERS, questions
 
 
 @pytest.fixture(scope="module")
@@ -242,9 +242,11 @@ def test_a_question_about_what_is_there_may_have_no_answer(asked: str, tmp_path:
 
 def test_whose_name_every_text_of_a_question_is_can_be_looked_up(folder: Path) -> None:
     texts = {p.name for each in questions().values() for p in each.parameters if p.kind == "text"}
-    assert texts == set(BEARERS)
-    for name, (_, pattern) in BEARERS.items():
-        found = capar("query", f"SELECT ?name WHERE {{ {pattern} }}", "--json", at=folder)
+    assert texts == set(PARAMETERS)
+    for name, described in PARAMETERS.items():
+        found = capar(
+            "query", f"SELECT ?name WHERE {{ {described['known']} }}", "--json", at=folder
+        )
         assert found.returncode == 0, found.stderr
         not_here = {"arrangement", "body", "preposition"}
         not_here |= {"lemma", "levin"}  # these need the lexicon

@@ -20,8 +20,7 @@ from kb.actionary import Actionary
 from kb.lexicon.links import class_links, sense_links, thesis_senses
 from kb.lexicon.loading import load_words
 from kb.lexicon.wordnet import wordnet
-from kb.queries.filters import FILTERS
-from kb.queries.questions import check_known, question, questions
+from kb.queries.questions import FILTERS, check_known, question, questions
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,6 @@ from capar.model.errors import CaparError, ParError
 from capar.model.locations import UNIT_M, SampledTrack, sampled_track
 from kb.actionary import Actionary
 from kb.errors import QueryError
-from kb.queries.notes import notes
 from kb.queries.questions import check_known, question
 from kb.store.statements import LiteralError, track, track_of
 
@@ -144,18 +143,6 @@ def test_where_a_body_was_while_it_was_lost_is_told_with_when(turning: Actionary
     assert turning.ask("place", **asked) == []
     with pytest.raises(CaparError, match=r"lost it from 1\.50 to 2\.00 s"):
         check_known(turning.store, question("place"), asked)
-
-
-@pytest.mark.parametrize(("time_s", "lost"), [(1.0, False), (1.7, True)])
-def test_the_world_at_a_time_is_told_with_what_was_lost_then(
-    time_s: float, turning: Actionary, *, lost: bool
-) -> None:
-    capture = turning.ask("observations")[0]["observation"]
-    asked = {"capture": capture, "time": time_s}
-    answer = turning.store.ask(question("world").bind(asked))
-    told = " ".join(notes(turning.store, question("world"), asked, answer))
-    assert ("'right_hand' is lost from 1.50 to 2.00 s" in told) is lost
-    assert "'mug' is lost" not in told
 
 
 @given(st.lists(st.booleans(), min_size=1, max_size=30), st.floats(0.0, 1.0))
