@@ -26,7 +26,7 @@ from capar.regeneration.roles import (
 )
 from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.sources import Source
-from kb.findings import Ability
+from kb.lookup.agents import Ability
 
 Abilities = Callable[[str], tuple[Ability, ...]]
 """What is declared or observed of an agent or a kind, those of more general kinds included."""
