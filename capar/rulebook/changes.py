@@ -254,7 +254,9 @@ def _planned(
 def _kept(store: Actionary, profile: str) -> Kept:
     every = store.observations()
     seen = {
-        each.name: Trial(stored_facts(store.store, each.name), named_segments(store.store, each.name))
+        each.name: Trial(
+            stored_facts(store.store, each.name), named_segments(store.store, each.name)
+        )
         for each in every
         if each.profile == profile
     }
