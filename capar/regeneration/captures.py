@@ -51,7 +51,7 @@ def capture_of(
         script=(),
         times=np.array(plan.source.times),
         motion=motion.postures,
-        scenes=plan.things,
+        things=plan.things,
         phases=(),
         gazes=plan.looks,
         looks=(),
