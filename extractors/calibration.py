@@ -30,12 +30,7 @@ STEP_SHARE = 1e-3
 
 
 def calibrate(capture: Capture, thresholds: Thresholds | None = None) -> Calibration:
-    """Decide what holds for a whole recording.
-
-    Args:
-        capture: The recording, or its beginning.
-        thresholds: What extraction decides by; None for the usual.
-    """
+    """Decide what holds for a whole recording."""
     return calibrated(capture, thresholds or Thresholds())[0]
 
 
@@ -160,10 +155,8 @@ FORM = "--set takes KEY=VALUE, such as touch_m:right_hand,bowl=0.12"
 def set_values(calibration: Calibration, settings: Iterable[str]) -> Calibration:
     """The same with some values replaced.
 
-    Args:
-        calibration: What was decided for a recording.
-        settings: ``KEY=VALUE`` each, in metres, seconds and radians. Keys are those of ``KEYS``;
-            ``touch_m:FIRST,SECOND`` is a distance of surfaces where both have one, else of origins.
+    ``settings``: ``KEY=VALUE`` each, in metres, seconds and radians. Keys are those of ``KEYS``;
+    ``touch_m:FIRST,SECOND`` is a distance of surfaces where both have one, else of origins.
 
     Raises:
         CaparError: It is not of that form, or the value is no number above zero.

@@ -10,18 +10,10 @@ from operator import attrgetter
 from typing import Any, cast
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Int
 
 from capar.model.calibration import Calibration, Found
-from capar.model.capture import (
-    Capture,
-    Purpose,
-    Role,
-    Sensor,
-    ShapeSource,
-    TagObject,
-    TagType,
-)
+from capar.model.capture import Capture, Purpose, Role, Sensor, ShapeSource, TagObject, TagType
 from capar.model.facts import (
     MEASURED,
     Between,
@@ -61,6 +53,7 @@ from capar.model.facts import (
     Touching,
     ZeroCrossing,
 )
+from capar.model.geometry import Places, Series, Vector
 from capar.model.notices import Notice, Value, notice
 from extractors.bodies.bodies import Bodies, BodyGeometry, bodies_of, trunk_sensor
 from extractors.bodies.poses import Poses
@@ -118,10 +111,7 @@ def boundary_frames(facts: Iterable[Fact], acting: Iterable[str], last_frame: in
     For each object that it touches, those of these frames at which it touches it, with the one
     before and the one after.
 
-    Args:
-        facts: Intervals and instants that were measured.
-        acting: The end-effectors.
-        last_frame: The capture's last frame.
+    ``acting``: the end-effectors. ``last_frame``: the capture's last frame.
     """
     frames: dict[str, set[int]] = defaultdict(set)
     touches: dict[str, list[Touching]] = defaultdict(list)
@@ -172,15 +162,8 @@ def handling(
 
     Handled are the acting end-effectors and every mobile object that one of them touches.
 
-    Args:
-        capture: The trial.
-        bodies: Its bodies.
-        known: Contacts and motions, as facts.
-        calibration: What was decided for the whole recording.
-        thresholds: What the measurements decide by.
-        guides: The hinge or rail of each object that moves on one.
-        since: Ways and turns before, of which this capture is the continuation.
-        whole: Whether this is a whole recording, and no part of one.
+    ``since``: ways and turns before, of which this capture is the continuation. ``whole``: whether
+    this is a whole recording, and no part of one.
     """
     seen = list(known)
     touches = [fact for fact in seen if isinstance(fact, Touching)]
@@ -244,7 +227,7 @@ def _trunks(capture: Capture) -> dict[str, str]:
 def _motion(
     one: BodyGeometry,
     known: list[Fact],
-    upright: Float[np.ndarray, "3"],
+    upright: Vector,
     thresholds: Thresholds,
     guide: Guide | None,
 ) -> Iterator[Fact]:
@@ -326,10 +309,7 @@ def _spans(holds: Holds, one: BodyGeometry, thresholds: Thresholds) -> list[Inte
 
 
 def _loads(
-    capture: Capture,
-    things: Mapping[str, BodyGeometry],
-    known: list[Fact],
-    thresholds: Thresholds,
+    capture: Capture, things: Mapping[str, BodyGeometry], known: list[Fact], thresholds: Thresholds
 ) -> Iterator[Fact]:
     """What mobile objects bear in or on them and take along."""
     mobile = {body.name for body in capture.objects if body.tag is TagType.MOBILE}
@@ -345,9 +325,7 @@ def _loads(
                 yield Rides(fact.body, fact.other, fact.first)
 
 
-def _sides(
-    touch: Touching, normal: Float[np.ndarray, "3"], capture: Capture, bodies: Bodies
-) -> Iterator[Fact]:
+def _sides(touch: Touching, normal: Vector, capture: Capture, bodies: Bodies) -> Iterator[Fact]:
     """On which side an end-effector touches what can be moved, and what looks somewhere."""
     body, other, first = touch.body, touch.other, touch.first
     if any(body.name == other and body.tag is TagType.MOBILE for body in capture.objects):
@@ -392,13 +370,7 @@ LOSS = "long-gap"
 def notices_of(
     capture: Capture, calibration: Calibration, thresholds: Thresholds
 ) -> Iterator[Notice]:
-    """What a reader of facts should know: how bodies touch, what is assumed, and what was lost.
-
-    Args:
-        capture: The trial.
-        calibration: What was decided for the whole recording.
-        thresholds: How long a gap is that counts.
-    """
+    """What a reader of facts should know: how bodies touch, what is assumed, and what was lost."""
     stated = capture.contact_tolerance_m is not None
     yield notice("contact-tolerance", tolerance_m=calibration.contact_tolerance_m, stated=stated)
     yield from _distance_notices(calibration)
@@ -447,11 +419,7 @@ def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
 
 
 def _loss(
-    body: Sensor | TagObject,
-    lost: list[tuple[int, int]],
-    times: Float[np.ndarray, "frames"],
-    *,
-    fixed: bool,
+    body: Sensor | TagObject, lost: list[tuple[int, int]], times: Series, *, fixed: bool
 ) -> Notice:
     """How often a body was lost for long, and when at most; without times if it was throughout.
 
@@ -496,12 +464,12 @@ class Track:
     """Those of them between which it is faster."""
 
     @property
-    def speed_mps(self) -> Float[np.ndarray, "frames"]:
+    def speed_mps(self) -> Series:
         """How fast it is [m/s]; NaN where lost. Computed again each time."""
         return speed(self.positions, self.poses.smooth.times)
 
     @property
-    def positions(self) -> Float[np.ndarray, "frames 3"]:
+    def positions(self) -> Places:
         """World positions [m]; NaN where lost."""
         return self.poses.smooth.positions
 
@@ -549,16 +517,11 @@ class Measurements:
 
 
 def measure(
-    capture: Capture,
-    calibration: Calibration | None = None,
-    since: Sums = FROM_THE_BEGINNING,
+    capture: Capture, calibration: Calibration | None = None, since: Sums = FROM_THE_BEGINNING
 ) -> Measurements:
     """Measure a capture: zero crossings, contacts, motions and looks, as facts.
 
-    Args:
-        capture: The trial, or a part of it.
-        calibration: What was decided for the whole recording; None decides it by this capture.
-        since: Ways and turns before, where the capture is a later part of a recording.
+    ``since``: ways and turns before, where the capture is a later part of a recording.
 
     Raises:
         CaptureError: The calibration is for another rate.
@@ -585,14 +548,9 @@ def measured(
 ) -> Measurements:
     """The same with bodies that were made by the calibration.
 
-    Args:
-        capture: The trial, or a part of it.
-        calibration: What was decided for the whole recording.
-        bodies: The bodies of the capture.
-        since: Ways and turns before, where the capture is a later part of a recording.
-        answers: Contacts that were asked about in an earlier part that overlaps.
-        notices: Whether losses and faults are sought, too.
-        whole: Whether this is a whole recording: angles that stay small in it are left out.
+    ``since``: ways and turns before, where the capture is a later part of a recording. ``notices``:
+    whether losses and faults are sought, too. ``whole``: whether this is a whole recording: angles
+    that stay small in it are left out.
     """
     limits = thresholds_of(calibration)
     tracks = {

@@ -8,6 +8,7 @@ from jaxtyping import Float, Int
 
 from capar.model import geometry
 from capar.model.capture import Capture, TagObject
+from capar.model.geometry import Places, Quaternion, Series, Vector
 from capar.model.locations import (
     ConstraintLocation,
     Nlt,
@@ -30,7 +31,7 @@ from extractors.relations.attention import NOTHING, Attention
 from extractors.signals.intervals import frame_rate
 from extractors.thresholds import Thresholds
 
-_Point: TypeAlias = Float[np.ndarray, "3"]
+_Point: TypeAlias = Vector
 
 
 def constraint_location(
@@ -47,14 +48,8 @@ def constraint_location(
     The contact's place is the middle of where the surfaces cut each other, or else the points
     at which they are nearest; where either has no shape, it is the origin of what comes.
 
-    Args:
-        capture: The trial.
-        bodies: Its bodies.
-        attention: What the attending sensors look at.
-        segment: The segment; its last frame is that of the contact.
-        dominant: The object in the end-effector that makes the contact; empty if the
-            end-effector does.
-        goal: The object that is touched.
+    ``attention``: what the attending sensors look at. ``dominant``: the object in the end-effector
+    that makes the contact; empty if the end-effector does. ``goal``: the object that is touched.
 
     Raises:
         UnknownNameError: A sensor or object of that name is not in the capture.
@@ -76,7 +71,7 @@ def constraint_location(
     )
 
 
-def size(each: TagObject) -> Float[np.ndarray, "3"]:
+def size(each: TagObject) -> Vector:
     """Lengths of an object along its own axes [m]; zero without a shape."""
     return np.zeros(3) if each.shape is None else each.shape.size
 
@@ -99,7 +94,7 @@ def _contact(
     return ee_nlt, normalised(on_target, _relative(at, moved, frame), size(target))
 
 
-def _relative(base: BodyGeometry, other: BodyGeometry, frame: int) -> Float[np.ndarray, "4"]:
+def _relative(base: BodyGeometry, other: BodyGeometry, frame: int) -> Quaternion:
     """The other's orientation in the base's frame."""
     return relative_orientation(
         base.poses.settled.orientations[frame], other.poses.settled.orientations[frame]
@@ -173,7 +168,7 @@ def followed(segment: Segment) -> tuple[bool, str]:
     return False, segment.ee
 
 
-def _place(position: Float[np.ndarray, "3"]) -> Place:
+def _place(position: Vector) -> Place:
     x, y, z = map(float, position)
     return x, y, z
 
@@ -183,12 +178,8 @@ def motion_kind(
 ) -> Motion:
     """How the body moves between two frames, against its pose at the first.
 
-    Args:
-        poses: The body's poses.
-        first: Frame of the reference pose.
-        last: Frame up to which motion counts.
-        own_m: The object's own floor of motion [m], if it has one.
-        thresholds: Least floors, and deviations of noise that they must exceed.
+    ``last``: frame up to which motion counts. ``own_m``: the object's own floor of motion [m], if
+    it has one.
     """
     span = slice(first, last + 1)
     places, turns = poses.smooth.positions[span], poses.smooth.orientations[span]
@@ -211,7 +202,7 @@ RATE_HZ = 50.0
 """Samples a second of a capture that has half as many frames again, or more [Hz]."""
 
 
-def sampled_tracks(bodies: Bodies, times: Float[np.ndarray, "frames"]) -> Iterator[SampledTrack]:
+def sampled_tracks(bodies: Bodies, times: Series) -> Iterator[SampledTrack]:
     """The track of each sensor and object, by name; an object that is a sensor stands once.
 
     No low-passed poses are kept: those of all bodies at once would be most of what a long recording
@@ -223,20 +214,10 @@ def sampled_tracks(bodies: Bodies, times: Float[np.ndarray, "frames"]) -> Iterat
         pose.forget()
 
 
-def track_of(
-    name: str,
-    places: Float[np.ndarray, "frames 3"],
-    times: Float[np.ndarray, "frames"],
-    *,
-    rests: bool,
-) -> SampledTrack:
+def track_of(name: str, places: Places, times: Series, *, rests: bool) -> SampledTrack:
     """The track of a body.
 
-    Args:
-        name: The body.
-        places: Its low-passed places [m]; NaN where it was lost.
-        times: Clock [s].
-        rests: Whether it is at one place throughout: one sample tells it.
+    ``places``: its low-passed places [m]; NaN where it was lost.
     """
     known = places[~np.isnan(places[:, 0])] if rests else places[:0]
     if len(known):
@@ -247,7 +228,7 @@ def track_of(
     return sampled_track(name, step, np.stack(columns, axis=1))
 
 
-def _clock(times: Float[np.ndarray, "frames"]) -> Float[np.ndarray, "samples"]:
+def _clock(times: Series) -> Float[np.ndarray, "samples"]:
     """Equal steps from the first to the last frame: the frames themselves if they are few."""
     duration = float(times[-1] - times[0])
     frames = len(times) - 1
@@ -259,9 +240,7 @@ STEPS = 33
 """Samples of a VelStyle, at equal steps of time from the first to the last [1]."""
 
 
-def style(
-    segment: Segment, track: Track, times: Float[np.ndarray, "frames"], thresholds: Thresholds
-) -> Style:
+def style(segment: Segment, track: Track, times: Series, thresholds: Thresholds) -> Style:
     """How a segment was performed: its VelStyle and its PathStyle."""
     span = segment.first, segment.last
     return Style(
@@ -274,12 +253,7 @@ def style(
 
 
 def velocity_style(
-    positions: Float[np.ndarray, "frames 3"],
-    times: Float[np.ndarray, "frames"],
-    first: int,
-    last: int,
-    *,
-    thresholds: Thresholds,
+    positions: Places, times: Series, first: int, last: int, *, thresholds: Thresholds
 ) -> tuple[float, ...]:
     """VelStyle: the share of the way covered, at ``STEPS`` equal steps of a segment's time.
 
@@ -287,12 +261,7 @@ def velocity_style(
     that move are averaged (thesis 4.4.2.3, eq. 4.1). It never falls and goes from 0 to 1; for an
     end-effector that does not move it is the time itself.
 
-    Args:
-        positions: Low-passed places of the end-effector [m]; NaN where lost.
-        times: Clock [s].
-        first: Frame where the segment begins.
-        last: Frame where it ends.
-        thresholds: What share of the largest axis's way makes an axis move.
+    ``last``: frame where it ends.
     """
     steps = np.linspace(0.0, 1.0, STEPS)
     part, clock = positions[first : last + 1], times[first : last + 1]
@@ -313,20 +282,12 @@ def velocity_style(
 
 
 def path_style(
-    positions: Float[np.ndarray, "frames 3"],
-    times: Float[np.ndarray, "frames"],
-    crossings: Int[np.ndarray, "crossings"],
-    first: int,
-    last: int,
+    positions: Places, times: Series, crossings: Int[np.ndarray, "crossings"], first: int, last: int
 ) -> tuple[PathPoint, ...]:
     """PathStyle: the end-effector's places at the zero crossings strictly inside a segment.
 
-    Args:
-        positions: Low-passed places of the end-effector [m]; NaN where lost.
-        times: Clock [s].
-        crossings: Frames at which its acceleration crosses zero, ascending.
-        first: Frame where the segment begins.
-        last: Frame where it ends.
+    ``crossings``: frames at which its acceleration crosses zero, ascending. ``last``: frame where
+    it ends.
     """
     inside = [int(each) for each in crossings if first < each < last]
     whole = times[last] - times[first]
@@ -337,6 +298,6 @@ def path_style(
     )
 
 
-def _point(position: Float[np.ndarray, "3"]) -> tuple[float, float, float]:
+def _point(position: Vector) -> tuple[float, float, float]:
     x, y, z = map(float, position)
     return x, y, z

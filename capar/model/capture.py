@@ -86,11 +86,6 @@ class Stream:
         """A stream of arrays that were a stream's before: neither checked nor copied.
 
         They may lie on disk, so that a long recording needs no memory until it is read.
-
-        Args:
-            times: Seconds since the first frame, strictly increasing.
-            positions: Origin of the body in the world [m]; NaN where it was lost.
-            orientations: Unit quaternions w x y z, body to world.
         """
         stream = cls.__new__(cls)
         object.__setattr__(stream, "times", times)
@@ -294,9 +289,8 @@ class Conventions:
     def unit(self, factor: float, share: float) -> str | None:
         """The unit that makes lengths so many times as long; None where none is near it.
 
-        Args:
-            factor: By what lengths in metres are to be multiplied [1].
-            share: Largest deviation of a unit from the wanted one, as a share of it [1].
+        ``factor``: by what lengths in metres are to be multiplied [1]. ``share``: largest deviation
+        of a unit from the wanted one, as a share of it [1].
         """
         wanted = self.unit_m * factor
         near = min(UNITS, key=lambda name: abs(np.log(UNITS[name] / wanted)))

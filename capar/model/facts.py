@@ -283,9 +283,7 @@ _defined: list[type[Observed]] = []
 def fact_kind(predicate: str, **declared: Any) -> Callable[[type[_Kind]], type[_Kind]]:
     """Make a class a kind of fact: a frozen dataclass with a predicate and a declaration.
 
-    Args:
-        predicate: Its name in the rules.
-        **declared: The fields of its ``Declaration``.
+    ``predicate``: its name in the rules. ``**declared``: the fields of its ``Declaration``.
 
     Raises:
         FactError: The declaration does not fit the fields.

@@ -1,6 +1,6 @@
 """Rigid motion in a right-handed world whose z axis points up: metres, and quaternions w x y z."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -9,6 +9,16 @@ from capar.model.errors import CaptureError
 
 if TYPE_CHECKING:  # it takes half a second to import, and who asks an Actionary turns nothing
     from scipy.spatial.transform import RigidTransform, Rotation
+
+Series: TypeAlias = Float[np.ndarray, "frames"]
+Holds: TypeAlias = Bool[np.ndarray, "frames"]
+Vector: TypeAlias = Float[np.ndarray, "3"]
+Quaternion: TypeAlias = Float[np.ndarray, "4"]
+Places: TypeAlias = Float[np.ndarray, "frames 3"]
+"""World positions [m] at every frame; NaN where lost."""
+
+Turns: TypeAlias = Float[np.ndarray, "frames 4"]
+"""Unit quaternions w x y z, body to world, at every frame; NaN where lost."""
 
 UNIT_TOLERANCE = 0.01
 """How far a quaternion's norm may lie from one before it is an error [1]."""
@@ -106,9 +116,7 @@ def from_middle(
 
     Of places along a line the middle is that from which the furthest is nearest.
 
-    Args:
-        places: World positions [m], NaN where lost.
-        of: The frames of the box.
+    ``places``: world positions [m], NaN where lost. ``of``: the frames of the box.
     """
     low, high = np.nanmin(places[of], axis=0), np.nanmax(places[of], axis=0)
     return np.asarray(np.linalg.norm(places - 0.5 * (low + high), axis=1))
@@ -119,9 +127,7 @@ def from_mean(
 ) -> Float[np.ndarray, "frames"]:
     """The angle of each orientation to the mean of some of them [rad]; NaN where it is lost.
 
-    Args:
-        orientations: Unit quaternions (w x y z), NaN where lost.
-        of: The frames of which the mean is taken.
+    ``of``: the frames of which the mean is taken.
     """
     known = orientations[of][~np.isnan(orientations[of]).any(axis=1)]
     if not len(known):

@@ -103,10 +103,6 @@ def document(value: Value) -> dict[str, Any]:
 def from_json(text: str, *, where: str = "") -> Observation:
     """The observation that a JSON text states.
 
-    Args:
-        text: What ``to_json`` wrote.
-        where: The text's file, for error messages.
-
     Raises:
         ParError: No JSON, or not of the schema; it says at which place and what was expected.
     """

@@ -32,8 +32,7 @@ class Nlt:
         Mirrored in the plane through the object's origin across an axis; the constraint's own axes
         are those of the other side's end-effector, mirrored alike.
 
-        Args:
-            axis: 0, 1 or 2 for x, y or z; by default the one that points to the object's left.
+        ``axis``: 0, 1 or 2 for x, y or z; by default the one that points to the object's left.
         """
         x, y, z = (0.0 - each if i == axis else each for i, each in enumerate(self.position))
         w, *vector = self.orientation

@@ -304,10 +304,7 @@ class NoticeKind:
 
 
 KINDS: Mapping[str, NoticeKind] = {
-    "long-gap": NoticeKind(
-        _long_gap,
-        "tracks with gaps",
-    ),
+    "long-gap": NoticeKind(_long_gap, "tracks with gaps"),
     "markers-not-rigid": NoticeKind(
         "{0}: {frames} frames in which its markers are not rigid are taken as lost",
         "bodies whose markers are not rigid",
@@ -318,30 +315,19 @@ KINDS: Mapping[str, NoticeKind] = {
         "bones that change their length",
         fault=True,
     ),
-    "stand-in-shape": NoticeKind(
-        "{0!r} is a stand-in: {shape}",
-        "stand-in shapes",
-    ),
+    "stand-in-shape": NoticeKind("{0!r} is a stand-in: {shape}", "stand-in shapes"),
     "no-shape": NoticeKind(
         "{0!r} has no shape, so no contact of it is known", "bodies without a shape"
     ),
-    "objects-left-out": NoticeKind(
-        _objects_left_out,
-        "groups of objects left out",
-    ),
-    "assumed-support": NoticeKind(
-        "{0!r} is assumed: {assumed}",
-        "assumed supports",
-    ),
+    "objects-left-out": NoticeKind(_objects_left_out, "groups of objects left out"),
+    "assumed-support": NoticeKind("{0!r} is assumed: {assumed}", "assumed supports"),
     "moving-ground": NoticeKind(
         "{0!r} goes by under the feet of {agent} at {speed_mps:.2f} m/s, as a treadmill does: feet "
         "that move with it stand",
         "grounds that go by under the feet",
     ),
     "pivot-distance": NoticeKind(
-        _pivot_distance,
-        "pairs that touch by the distance of their origins",
-        of_pair=True,
+        _pivot_distance, "pairs that touch by the distance of their origins", of_pair=True
     ),
     "touch-estimated": NoticeKind(
         _touch_estimated,
@@ -354,9 +340,7 @@ KINDS: Mapping[str, NoticeKind] = {
         fault=True,
     ),
     "mount-gap": NoticeKind(
-        lambda each: mount_gap(each.bodies, each.fields),
-        "bodies carried with a gap",
-        fault=True,
+        lambda each: mount_gap(each.bodies, each.fields), "bodies carried with a gap", fault=True
     ),
     "no-mover": NoticeKind(
         lambda each: no_mover(each.bodies, each.fields),
@@ -408,7 +392,7 @@ KINDS: Mapping[str, NoticeKind] = {
         "{0}: end_effector {stated!r} is none of {known}, which rules know; did you mean {near!r}?"
     ),
     "sensors-grouped": NoticeKind(
-        '{0!r} is one end-effector of several sensors: {sensors}; parts = "apart" tells each',
+        '{0!r} is one end-effector of several sensors: {sensors}; parts = "apart" tells each'
     ),
     "mesh-not-closed": NoticeKind("{0}: the mesh {mesh} is not closed, it has {edges} open edges"),
     "earlier": NoticeKind("{text}"),

@@ -18,9 +18,7 @@ _PLACES: dict[str, str] = {}
 def register(form: str, place: str) -> None:
     """Say which function shows values in some form.
 
-    Args:
-        form: ``html``, ``frame`` ...
-        place: The function, as ``MODULE:FUNCTION``.
+    ``form``: ``html``, ``frame`` ... ``place``: the function, as ``MODULE:FUNCTION``.
     """
     _PLACES[form] = place
 
@@ -416,10 +414,7 @@ def find_segment(
 ) -> Segment:
     """The segment at an address.
 
-    Args:
-        links: The links of one capture.
-        address: With that capture's name, or without any.
-        capture: The capture's name.
+    ``links``: the links of one capture. ``address``: with that capture's name, or without any.
 
     Raises:
         UnknownNameError: The address names another capture, or a segment that is not there.

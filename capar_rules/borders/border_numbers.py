@@ -91,16 +91,12 @@ class Edge:
 
 
 def edges(
-    own: Sequence[Touching],
-    moving: Iterable[Moving],
-    displaced: Iterable[Displaced],
+    own: Sequence[Touching], moving: Iterable[Moving], displaced: Iterable[Displaced]
 ) -> tuple[Edge, ...]:
     """The edges of every motion that lie within a contact of the end-effector with the object.
 
-    Args:
-        own: The end-effector's contacts, in order of time.
-        moving: Motions of what it touches.
-        displaced: When those truly began and ended.
+    ``own``: the end-effector's contacts, in order of time. ``moving``: motions of what it touches.
+    ``displaced``: when those truly began and ended.
     """
     contacts: dict[str, list[Touching]] = {}
     for contact in own:
@@ -170,20 +166,12 @@ def as_borne(contact: Touching, seats: Seats) -> Touching:
 
 
 def landings(
-    ee: str,
-    ticks: Sequence[int],
-    own: Iterable[Touching],
-    others: Iterable[Touching],
-    seats: Seats,
+    ee: str, ticks: Sequence[int], own: Iterable[Touching], others: Iterable[Touching], seats: Seats
 ) -> Iterator[Fact]:
     """When what the end-effector handles, or itself, truly begins and ceases to touch what.
 
-    Args:
-        ee: The end-effector.
-        ticks: Frames of its link's ticks, ascending; the true ends are among them.
-        own: Its own contacts.
-        others: Contacts of what it handles.
-        seats: When bodies are down on others.
+    ``ticks``: frames of its link's ticks, ascending; the true ends are among them. ``own``: its own
+    contacts. ``others``: contacts of what it handles. ``seats``: when bodies are down on others.
     """
     for contact in own:
         borne = as_borne(contact, seats)
@@ -229,11 +217,8 @@ def shared(
 ) -> Iterator[Fact]:
     """Which contact of another end-effector came before or goes on after one's own, and when.
 
-    Args:
-        ee: The end-effector.
-        ticks: Frames of its link's ticks, ascending.
-        pairs: Its own contacts, each with one of another end-effector.
-        rate_hz: Frames a second [Hz].
+    ``ticks``: frames of its link's ticks, ascending. ``pairs``: its own contacts, each with one of
+    another end-effector.
     """
     margin = in_frames(times().merge_ms, rate_hz)
     for touch, each in pairs:
@@ -367,11 +352,8 @@ def undisturbed(
     palm from which the last thing is taken rests on. Each costs two searches, however many ticks or
     contacts it holds.
 
-    Args:
-        ee: The end-effector.
-        ticks: The frames of its link's ticks, in order.
-        rests: When it rests.
-        own: Its contacts, by their first frames.
+    ``ticks``: the frames of its link's ticks, in order. ``own``: its contacts, by their first
+    frames.
     """
     begins = [each.first for each in own]
     latest = list(accumulate((each.last for each in own), max))
@@ -389,10 +371,8 @@ def undisturbed(
 def number_borders(facts: Sequence[Fact], *, crossings_only: bool) -> tuple[Fact, ...]:
     """The facts that number the borders of every link.
 
-    Args:
-        facts: What the extractors measured.
-        crossings_only: Whether ticks are the zero crossings, as in the thesis, or else the first
-            and last frames of every contact and motion that concerns the link.
+    ``crossings_only``: whether ticks are the zero crossings, as in the thesis, or else the first
+    and last frames of every contact and motion that concerns the link.
     """
     scene = _Scene(facts)
     numbered = (

@@ -51,9 +51,6 @@ def steady(facts: Sequence[Fact]) -> tuple[Fact, ...]:
 
     The corrections are stated beside them, so that the measurements can be restored.
 
-    Args:
-        facts: What the extractors measured.
-
     Raises:
         RuleError: The rules have a fault.
     """

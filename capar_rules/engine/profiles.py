@@ -47,11 +47,8 @@ def profile(
 ) -> Profile:
     """The profile of that name, with rule files added to it unchecked.
 
-    Args:
-        name: Of the profile.
-        added: Rule files of the user.
-        steady: Whether to resolve flicker; None for what is usual in the profile: ``extended``
-            does, and ``thesis`` takes contacts as they were measured.
+    ``added``: rule files of the user. ``steady``: whether to resolve flicker; None for what is
+    usual in the profile: ``extended`` does, and ``thesis`` takes contacts as they were measured.
 
     Raises:
         UnknownNameError: There is none.

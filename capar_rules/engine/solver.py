@@ -35,8 +35,7 @@ class RuleBase:
     def program(self, measured: frozenset[Signature]) -> str:
         """Every directive, and the rules on which the answer depends.
 
-        Args:
-            measured: The only predicates that have facts.
+        ``measured``: the only predicates that have facts.
         """
         if measured not in self.programs:
             fired = {id(rule) for rule in firing(self.statements, measured)}
@@ -317,10 +316,7 @@ def _grounded_text(text: str, options: Sequence[str], *, part: str = "base") -> 
 def brave(text: str, shown: Iterable[Signature], *, known: Container[Atom] = ()) -> frozenset[Atom]:
     """The atoms that are shown in at least one answer of a program.
 
-    Args:
-        text: The program.
-        shown: Their predicates.
-        known: Atoms that need not be found; the program is not solved if it has no others.
+    ``shown``: their predicates.
 
     Raises:
         RuleError: The program has an error, or no answer.

@@ -296,10 +296,8 @@ def towards(
 ) -> list[Statement]:
     """The rules that targets depend on, and the constants, in order.
 
-    Args:
-        statements: A rule base.
-        targets: Predicates to derive.
-        given: Predicates that are defined elsewhere, whose rules are left out.
+    ``statements``: A rule base. ``targets``: predicates to derive. ``given``: predicates that are
+    defined elsewhere, whose rules are left out.
     """
     heads: dict[Signature, list[Statement]] = defaultdict(list)
     for each in statements:
@@ -330,9 +328,7 @@ def towards(
 def firing(statements: Sequence[Statement], measured: Iterable[Signature]) -> list[Statement]:
     """The rules that can fire if only these predicates have facts, and the constants.
 
-    Args:
-        statements: A rule base.
-        measured: Predicates that have a fact.
+    ``statements``: A rule base. ``measured``: predicates that have a fact.
     """
     known, fired = set(measured), set[int]()
     needs = [(number, each, _needed(each)) for number, each in enumerate(statements)]
@@ -349,8 +345,7 @@ def asked_for(statements: Sequence[Statement]) -> list[Statement]:
     All of them, where more than the definitions of what is shown decides on the answer: choices,
     constraints, weights, or terms that are shown.
 
-    Args:
-        statements: A rule base.
+    ``statements``: A rule base.
     """
     shown = {each.shows for each in statements if each.shows is not None}
     if not shown or not all(map(_merely_defines, statements)):

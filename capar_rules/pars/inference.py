@@ -25,10 +25,7 @@ def joint_actions(
 ) -> tuple[JointAction, ...]:
     """The joint actions of an answer, in order of time.
 
-    Args:
-        answer: What the rules derived.
-        segments: Every segment by its end-effector and the tick at which it begins.
-        rate_hz: Frames a second [Hz].
+    ``answer``: what the rules derived.
     """
     parts: dict[Any, list[Segment]] = defaultdict(list)
     for joint, term in answer.of("takes_part"):

@@ -38,11 +38,8 @@ ALL = "all"
 def compose(inference: Inference, *, name: str, frames: int, duration_s: float) -> ComplexPar:
     """The complex PAR of everything observed (thesis 4.6.2).
 
-    Args:
-        inference: Segments, and which of them make one common last step.
-        name: What the whole action is called.
-        frames: Number of the capture's last frame.
-        duration_s: The whole duration [s].
+    ``inference``: segments, and which of them make one common last step. ``duration_s``: the whole
+    duration [s].
     """
     common = _common(inference, name, frames)
     end = common.begin if common else 1.0
@@ -225,11 +222,8 @@ def ipars(
 ) -> tuple[Ipar, ...]:
     """One IPAR a segment, links in order.
 
-    Args:
-        inference: Segments and their conditions.
-        measured: What was measured of each segment.
-        agent: Who acts, where a link does not say whose it is.
-        name: What the whole action is called.
+    ``inference``: segments and their conditions. ``measured``: what was measured of each segment.
+    ``agent``: who acts, where a link does not say whose it is.
     """
     agents = {link.ee: link.agent or agent for link in inference.links}
     return tuple(

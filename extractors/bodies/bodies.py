@@ -13,6 +13,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from capar.model.calibration import BodyCalibration, Calibration
 from capar.model.capture import Capture, Sensor, Shape, TagObject, TagType
+from capar.model.geometry import Places, Turns, Vector
 from capar.model.observation import ObservedObject
 from extractors.bodies.poses import Poses, poses_of, rotation_matrices
 from extractors.thresholds import Thresholds
@@ -37,12 +38,12 @@ class BodyGeometry:
     poses: Poses
 
     @cached_property
-    def orientations(self) -> Float[np.ndarray, "frames 4"]:
+    def orientations(self) -> Turns:
         """Unit quaternions w x y z, low-passed."""
         return self.poses.settled.orientations if self.poses.rests else self._smooth[1]
 
     @cached_property
-    def middles(self) -> Float[np.ndarray, "frames 3"]:
+    def middles(self) -> Places:
         """The middle of its box in the world [m], or its origin where it has no shape.
 
         Those of a body that rests are one row, repeated without memory of its own.
@@ -86,7 +87,7 @@ class BodyGeometry:
         return once(_PLANES, self.shape, _planes)
 
     @cached_property
-    def boxes(self) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:
+    def boxes(self) -> tuple[Places, Places]:
         """Lowest and highest corner of its box along the world's axes at each frame [m].
 
         Those of a body that rests are one row, repeated without memory of its own.
@@ -137,10 +138,8 @@ def once(
 ) -> _Found:
     """What is found of a shape: sought once, and kept as long as the shape is.
 
-    Args:
-        known: What was found of shapes before; it is kept there.
-        shape: The surface of a body, in the body's own frame.
-        find: What finds it by nothing but the shape.
+    ``shape``: the surface of a body, in the body's own frame. ``find``: what finds it by nothing
+    but the shape.
     """
     if shape not in known:
         known[shape] = find(shape)
@@ -258,17 +257,13 @@ def trunk_sensor(sensors: Iterable[Sensor]) -> Sensor | None:
     return next((by_type[kind] for kind in TRUNK if kind in by_type), None)
 
 
-def from_trunk(
-    body: BodyGeometry, trunk: BodyGeometry, upright: Float[np.ndarray, "3"]
-) -> Float[np.ndarray, "frames 3"]:
+def from_trunk(body: BodyGeometry, trunk: BodyGeometry, upright: Vector) -> Places:
     """The middle of a body from the trunk's origin [m], by axes that turn with the trunk.
 
     They turn about the vertical only, and do not lean: who bends has not raised a hand.
 
-    Args:
-        body: The body.
-        trunk: The trunk; where either is lost, the answer is NaN.
-        upright: The axis of the trunk that points up while it stands, in its own frame.
+    ``trunk``: the trunk; where either is lost, the answer is NaN. ``upright``: the axis of the
+    trunk that points up while it stands, in its own frame.
     """
     stream = trunk.poses.smooth
     offset = body.middles - stream.positions
@@ -279,7 +274,7 @@ def from_trunk(
 
 
 def _levelled(
-    rotations: Float[np.ndarray, "frames 3 3"], upright: Float[np.ndarray, "3"]
+    rotations: Float[np.ndarray, "frames 3 3"], upright: Vector
 ) -> Float[np.ndarray, "frames 2"]:
     """The direction on the level of some axis across ``upright``, as if it had been righted.
 

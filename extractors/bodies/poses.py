@@ -5,12 +5,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
 from capar.model.calibration import BodyCalibration, FixedPose
 from capar.model.capture import Sensor, Stream, TagObject, TagType
+from capar.model.geometry import Holds, Places, Quaternion, Turns, Vector
 from extractors.signals.filters import (
     Noise,
     fill_gaps,
@@ -31,23 +32,18 @@ class LowPassed(Stream):
     _thresholds: Thresholds
 
     def __init__(self, source: Stream, thresholds: Thresholds) -> None:
-        """Filter a stream when that is asked for.
-
-        Args:
-            source: The stream, not lost throughout.
-            thresholds: The cutoff.
-        """
+        """Filter a stream when that is asked for."""
         object.__setattr__(self, "times", source.times)
         object.__setattr__(self, "_source", source)
         object.__setattr__(self, "_thresholds", thresholds)
 
     @cached_property
-    def positions(self) -> Float[np.ndarray, "frames 3"]:
+    def positions(self) -> Places:
         """Origin of the body in the world [m]; NaN where it was lost."""
         return _read_only(lowpass(self._source.positions, self.times, self._thresholds))
 
     @cached_property
-    def orientations(self) -> Float[np.ndarray, "frames 4"]:
+    def orientations(self) -> Turns:
         """Unit quaternions w x y z, body to world, of continuous sign; NaN where it was lost."""
         turns = lowpass_orientations(self._source.orientations, self.times, self._thresholds)
         return _read_only(geometry.continuous(geometry.unit(turns)))
@@ -99,7 +95,7 @@ class Poses:
             self.smooth.forget()
 
     @property
-    def lost(self) -> Bool[np.ndarray, "frames"]:
+    def lost(self) -> Holds:
         """Where the pose is not known, even so."""
         return self.settled.lost
 
@@ -111,11 +107,6 @@ def poses_of(
 
     A fixed object stands at the median of its places throughout: what its tracker shows besides
     is noise, which at the rim of a large table would exceed any tolerance.
-
-    Args:
-        body: The sensor or object.
-        thresholds: What separates noise from motion and gaps from losses.
-        known: What was decided for it before; None decides it by this stream.
     """
     filled = fill_gaps(body.stream, gap_s=thresholds.gap_s)
     if known is None:
@@ -132,9 +123,7 @@ def poses_of(
     return Poses(body.name, filled, smooth, settled, noise, still, fixed)
 
 
-def median_pose(
-    stream: Stream, frames: slice
-) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "4"]]:
+def median_pose(stream: Stream, frames: slice) -> tuple[Vector, Quaternion]:
     """The middle of the known poses of some frames in a row: median place [m], mean orientation.
 
     The median is taken about each axis of the world's own frame, its middle half averaged; it
@@ -181,9 +170,7 @@ def _still(stream: Stream) -> bool:
     return bool((stream.positions == first[0]).all() and (stream.orientations == first[1]).all())
 
 
-def rotation_matrices(
-    orientations: Float[np.ndarray, "frames 4"],
-) -> Float[np.ndarray, "frames 3 3"]:
+def rotation_matrices(orientations: Turns) -> Float[np.ndarray, "frames 3 3"]:
     """Rotation matrices of unit quaternions; those of lost frames are NaN."""
     if len(orientations) == 1:
         return np.array([_rows(*orientations[0].tolist())])

@@ -4,12 +4,12 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float
 
 from capar.model import geometry
 from capar.model.calibration import Calibration, Found
 from capar.model.capture import Capture, Stream
 from capar.model.facts import Fact, Moving
+from capar.model.geometry import Series
 from extractors.bodies.bodies import Bodies, BodyGeometry
 from extractors.contact.contacts import Contact, points_apart
 from extractors.contact.proximity import body, near
@@ -31,16 +31,7 @@ def blows(
     motions: Motions,
     thresholds: Thresholds,
 ) -> Iterator[Contact]:
-    """Contacts of end-effectors, and of what they hold, with things that they set going.
-
-    Args:
-        capture: The trial.
-        bodies: Its bodies.
-        calibration: Distances of contact.
-        known: Contacts; what is touched by a possible striker as it begins to move was not struck.
-        motions: When each object moves.
-        thresholds: How fast what is struck is, and how soon.
-    """
+    """Contacts of end-effectors, and of what they hold, with things that they set going."""
     acting = [each.name for each in capture.acting]
     touches = tuple(known)
     for name, spans in motions.items():
@@ -62,12 +53,7 @@ def blows(
 
 
 def _blow_of_any(
-    ee: str,
-    name: str,
-    frame: int,
-    bodies: Bodies,
-    calibration: Calibration,
-    thresholds: Thresholds,
+    ee: str, name: str, frame: int, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
 ) -> Iterator[Contact]:
     """The contact of an end-effector, or of any part of it, with a thing that is set going."""
     for part in bodies.on_end_effector(ee):
@@ -126,11 +112,6 @@ def set_going(
     """Frames at which a thing that rested is set going at once, as nothing but a blow does.
 
     It is as fast as a struck thing within the time by which the filter blurs a motion.
-
-    Args:
-        thing: The thing.
-        motions: When it moves, as closed intervals of frames.
-        thresholds: How fast is fast, and how soon.
     """
     times = thing.poses.smooth.times
     pace = speed(thing.middles, times)
@@ -149,12 +130,7 @@ def blow(
     A low-pass that is longer than the contact takes the two apart; what was recorded has
     the noise of one frame instead, for which the tolerance of contact is meant.
 
-    Args:
-        one: What strikes, or is struck.
-        other: The other of the two.
-        frame: When the one that is struck was seen to move first.
-        distance_m: Distance up to which the two touch [m].
-        thresholds: How long before and after they may have met.
+    ``distance_m``: distance up to which the two touch [m].
 
     Returns:
         The stretch of contact nearest to the frame; None if there is none.
@@ -189,13 +165,7 @@ def arrivals(
     What moves beyond its floor as the end-effector comes is touched already, and what moves so as
     it goes is touched still; what merely wobbles as it is grasped or let go is not.
 
-    Args:
-        capture: The trial.
-        bodies: Its bodies.
-        calibration: How the distance of each pair was found.
-        touches: Contacts within those distances.
-        moves: When things move, by their floors.
-        thresholds: The window of a speed, and the speed of a body at rest.
+    ``moves``: when things move, by their floors.
     """
     motions = [each for each in moves if isinstance(each, Moving)]
     for touch in touches:
@@ -219,10 +189,7 @@ def _in(move: Moving, touch: Contact, first: int, last: int) -> bool:
 
 
 def settled_ends(
-    apart: Float[np.ndarray, "frames"],
-    contact: Interval,
-    times: Float[np.ndarray, "frames"],
-    thresholds: Thresholds,
+    apart: Series, contact: Interval, times: Series, thresholds: Thresholds
 ) -> Interval:
     """The closed interval within a contact from the end of the approach to the begin of departure.
 
@@ -230,11 +197,7 @@ def settled_ends(
     before it has arrived and after it has set off. It has arrived when the distance no longer
     shrinks, and leaves when it begins to grow, faster than a body at rest moves.
 
-    Args:
-        apart: Distance of the points by which the two touch [m]; NaN where either is lost.
-        contact: First and last frame at which they are within the distance of touch.
-        times: Clock [s].
-        thresholds: The window of a speed, and the speed of a body at rest.
+    ``apart``: distance of the points by which the two touch [m]; NaN where either is lost.
 
     Returns:
         The contact itself where the two never settle.

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Int
 from capar.model import geometry
 from capar.model.calibration import Calibration, Found, MovingGround, PairCalibration
 from capar.model.capture import Capture, PivotContact, Sensor, TagObject, TagType
-from capar.model.geometry import runs
+from capar.model.geometry import Holds, Series, Vector, runs
 from extractors.bodies.bodies import Bodies, BodyGeometry, blocks
 from extractors.bodies.poses import Poses
 from extractors.contact.proximity import Body, body, distance, near, screened
@@ -36,7 +36,7 @@ class _Asked:
     first: int
     one: Body
     two: Body
-    answer: Bool[np.ndarray, "frames"]
+    answer: Holds
 
 
 class EarlierAnswers:
@@ -51,23 +51,13 @@ class EarlierAnswers:
         self._asked: dict[tuple[str, str, float], _Asked] = {}
 
     def begin(self, first: int) -> None:
-        """Begin a window.
-
-        Args:
-            first: The frame of the recording that is the window's first.
-        """
+        """Begin a window."""
         self._first = first
 
-    def near(
-        self, names: tuple[str, str], one: Body, two: Body, *, distance_m: float
-    ) -> Bool[np.ndarray, "frames"]:
+    def near(self, names: tuple[str, str], one: Body, two: Body, *, distance_m: float) -> Holds:
         """What ``extractors.contact.proximity.near`` answers.
 
-        Args:
-            names: The names of the two bodies.
-            one: The first body through the window.
-            two: The second one.
-            distance_m: Distance up to which they are near [m].
+        ``distance_m``: distance up to which they are near [m].
         """
         known = self._asked.get((*names, distance_m))
         out = np.zeros(len(one.positions), dtype=bool)
@@ -124,17 +114,13 @@ def gliding(
     ground: BodyGeometry,
     thresholds: Thresholds,
     ground_mps: tuple[float, float] = (0.0, 0.0),
-) -> Bool[np.ndarray, "frames"]:
+) -> Holds:
     """Frames in which no part of a foot's underside is nearly still against the ground.
 
     Only a foot whose middle is above the whole ground can glide over it; what it does to walls is
     not asked here, nor is a slope or a room whose floor and walls are one body.
 
-    Args:
-        foot: The foot.
-        ground: A fixed body that it may stand on.
-        thresholds: How slowly a foot that is set down shifts.
-        ground_mps: The level velocity of the ground's surface [m/s].
+    ``ground_mps``: the level velocity of the ground's surface [m/s].
     """
     pace = np.linalg.norm(sole_velocities(foot, thresholds, ground_mps) - ground_mps, axis=1)
     with np.errstate(invalid="ignore"):
@@ -171,7 +157,7 @@ def sole_velocities(
 
 
 def _known_nearest(
-    velocities: Float[np.ndarray, "frames 2"], lost: Bool[np.ndarray, "frames"]
+    velocities: Float[np.ndarray, "frames 2"], lost: Holds
 ) -> Float[np.ndarray, "frames 2"]:
     """Velocities with those that are unknown beside a loss filled; where lost they stay unknown."""
     unknown = np.isnan(velocities).any(axis=1)
@@ -191,11 +177,7 @@ def moving_grounds(
     down. Against a belt that has stopped for a while feet rest, and no velocity is found; who
     glides on skates without a rest cannot be told from who walks on a belt.
 
-    Args:
-        capture: The recording.
-        bodies: Its bodies.
-        touch_m: Distance up to which each pair of bodies touches [m].
-        limits: How slowly a foot that is set down shifts, and in what share of its contact.
+    ``touch_m``: distance up to which each pair of bodies touches [m].
     """
     feet: dict[str, list[BodyGeometry]] = {}
     for name, agent in soles(capture).items():
@@ -297,7 +279,7 @@ def _meet_free(capture: Capture, one: Sensor, other: Sensor, tolerance_m: float)
 
 def _near_any(
     some: Iterable[Sensor], others: Iterable[Sensor | TagObject], tolerance_m: float
-) -> Bool[np.ndarray, "frames"]:
+) -> Holds:
     """At which frames any of some bodies is at any of others; those without shapes are at none."""
     some, others = list(some), list(others)
     out = np.zeros(len(some[0].stream.times), dtype=bool)
@@ -321,11 +303,7 @@ def counted_meetings(
     It does not while either touches a mobile object, and it is not that of a hand that rests when
     the other one comes to it.
 
-    Args:
-        capture: The trial.
-        bodies: Its bodies.
-        meetings: Contacts: who touches what, and when.
-        thresholds: What rest is measured by.
+    ``meetings``: contacts: who touches what, and when.
     """
     known = list(meetings)
     hands = {each.name: each for each in capture.acting if each.end_effector == HAND}
@@ -365,12 +343,6 @@ def in_passing(
 
     A blow turns that course back or ends it, a grasp ends it, and what is pushed or struck away
     takes it over. A hand that brushes past a thing goes on as before.
-
-    Args:
-        one: A body.
-        other: The other one.
-        contact: First and last frame of their contact.
-        thresholds: What is brief, what is fast, and how much of the course is kept.
     """
     first, last = contact
     times = one.poses.smooth.times
@@ -388,7 +360,7 @@ def in_passing(
     return bool(before @ after >= thresholds.passing_share * pace**2)
 
 
-def _course(one: BodyGeometry, other: BodyGeometry, span: Interval) -> Float[np.ndarray, "3"]:
+def _course(one: BodyGeometry, other: BodyGeometry, span: Interval) -> Vector:
     """Mean velocity of a body's middle relative to another's between two frames [m/s]."""
     offsets = [one.middles[frame] - other.middles[frame] for frame in span]
     times = one.poses.smooth.times
@@ -430,11 +402,7 @@ def pair_distances(
 
     Where the capture states none and one of the two has no surface, the recording tells.
 
-    Args:
-        capture: The trial.
-        bodies: Its bodies.
-        tolerance_m: Distance up to which surfaces count as touching [m].
-        thresholds: How much noise between two frames of contact is allowed for.
+    ``tolerance_m``: distance up to which surfaces count as touching [m].
     """
     evidence = Evidence(capture, bodies, thresholds)
     found = _pair_distances(capture, bodies, tolerance_m, evidence)
@@ -471,13 +439,6 @@ def contacts(
     A contact that is there before and after a body was lost is taken to last in between, however
     long; one that is there on one side alone ends, or begins, where the body was last, or first,
     seen (spec 3).
-
-    Args:
-        capture: The trial.
-        bodies: Its bodies.
-        calibration: Distances of contact, and least durations of contacts and interruptions.
-        limits: What brushes past.
-        answers: What was answered in the window before, where the capture is one of several.
     """
     surfaces = {each: touchable(each) for pair in watched(capture, bodies) for each in pair}
     found: list[Contact] = []
@@ -525,12 +486,8 @@ def contacts(
 
 
 def _near(
-    names: tuple[str, str],
-    one: Body,
-    two: Body,
-    distance_m: float,
-    answers: EarlierAnswers | None,
-) -> Bool[np.ndarray, "frames"]:
+    names: tuple[str, str], one: Body, two: Body, distance_m: float, answers: EarlierAnswers | None
+) -> Holds:
     if answers is None:
         return near(one, two, distance_m=distance_m)
     return answers.near(names, one, two, distance_m=distance_m)
@@ -602,17 +559,13 @@ def watched(capture: Capture, bodies: Bodies) -> Iterator[tuple[BodyGeometry, Bo
                 yield bodies.objects[name], bodies.objects[thing.name]
 
 
-def bridged(
-    touching: Bool[np.ndarray, "frames"], near_by: Bool[np.ndarray, "frames"], *, edge: int = 0
-) -> Bool[np.ndarray, "frames"]:
+def bridged(touching: Holds, near_by: Holds, *, edge: int = 0) -> Holds:
     """Contact that also lasts between two of its frames if the bodies stay near by throughout.
 
-    Args:
-        touching: Whether they touch, at each frame.
-        near_by: Whether they are near by.
-        edge: An interruption of fewer frames than so many that the recording's begin or end cuts
-            off counts as one between two frames of contact: nobody sees that it lasts, and a
-            filter takes least noise away there.
+    ``touching``: whether they touch, at each frame. ``near_by``: whether they are near by.
+    ``edge``: an interruption of fewer frames than so many that the recording's begin or end cuts
+    off counts as one between two frames of contact: nobody sees that it lasts, and a filter takes
+    least noise away there.
     """
     out = touching.copy()
     for first, last in geometry.runs(near_by | touching):
@@ -639,9 +592,7 @@ def _pivot(capture: Capture, first: str, second: str) -> PivotContact | None:
     return None
 
 
-def points_apart(
-    pair: PairCalibration, first: BodyGeometry, second: BodyGeometry
-) -> Float[np.ndarray, "frames"]:
+def points_apart(pair: PairCalibration, first: BodyGeometry, second: BodyGeometry) -> Series:
     """Distance of the points by which two bodies touch [m]; NaN where either is lost."""
     points = TouchPoints(pair.first_point, pair.second_point)
     return points.apart(first.poses.settled, second.poses.settled)

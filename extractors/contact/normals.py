@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy.spatial import cKDTree
 
+from capar.model.geometry import Vector
 from extractors.bodies.bodies import BodyGeometry
 from extractors.contact.surfaces import Surface, surface
 from extractors.thresholds import Thresholds
@@ -65,19 +66,15 @@ def facing_normal(
     depth_m: float,
     solid: tuple[bool, bool] = (True, True),
     box: Box | None = None,
-) -> Float[np.ndarray, "3"] | None:
+) -> Vector | None:
     """The mean normal of the patch where two surfaces meet, from the other to the body.
 
     Each place counts with its area, and as far as it faces the nearest place of the other
     surface. None where nothing faces, or all sides alike: a peg in its hole.
 
-    Args:
-        body: Triangles [m], outward by their corners' order.
-        other: The same of the other body, in the same frame.
-        depth_m: The patch holds what is no further from the other surface than this beyond the
-            nearest of all [m].
-        solid: Whether either bounds a solid, so that its normals point outward.
-        box: Where they may meet; None for where the boxes of these triangles do.
+    ``depth_m``: the patch holds what is no further from the other surface than this beyond the
+    nearest of all [m]. ``solid``: whether either bounds a solid, so that its normals point outward.
+    ``box``: where they may meet; None for where the boxes of these triangles do.
     """
     if box is None:
         box = meeting_box(body.reshape(-1, 3), other.reshape(-1, 3), depth_m=depth_m)
@@ -206,16 +203,10 @@ def _tree(of: Places) -> cKDTree:
 
 def _faced(
     own: Places, others: Places, some: Int[np.ndarray, "near"], nearest: Int[np.ndarray, "near"]
-) -> Float[np.ndarray, "3"]:
+) -> Vector:
     """The sum of a patch's normals by area, as far as each faces the nearest of the others.
 
     Of an open sheet nobody knows which side is out: there what faces it looks towards it.
-
-    Args:
-        own: Places of a surface.
-        others: Those of the other one.
-        some: Which of its own are near the other surface.
-        nearest: To which of the others each of those is nearest.
     """
     if not own.outward:
         return np.zeros(3)
@@ -232,14 +223,14 @@ def _faced(
 SLACK_M = 1e-6
 """By so much the box is larger in which triangles are sought, since turning it rounds [m]."""
 
-_Normals: TypeAlias = dict[tuple[int, float], Float[np.ndarray, "3"] | None]
+_Normals: TypeAlias = dict[tuple[int, float], Vector | None]
 _KEPT: WeakKeyDictionary[BodyGeometry, WeakKeyDictionary[BodyGeometry, _Normals]] = (
     WeakKeyDictionary()
 )
 
 
 _Poses: TypeAlias = tuple[bytes, bytes, bytes, bytes, float]
-_LATEST: OrderedDict[_Poses, Float[np.ndarray, "3"] | None] = OrderedDict()
+_LATEST: OrderedDict[_Poses, Vector | None] = OrderedDict()
 """Normals of the patches that were sought last, by shapes and poses: windows of a recording begin
 at the same frames again and again."""
 
@@ -248,7 +239,7 @@ _MOST_LATEST = 512
 
 def contact_normal(
     body: BodyGeometry, other: BodyGeometry, frame: int, thresholds: Thresholds
-) -> Float[np.ndarray, "3"] | None:
+) -> Vector | None:
     """The unit normal of a contact, from the other to the body, in the world; None if unknown.
 
     Contacts and seats ask for the same ones, either way about, so those of patches are kept as
@@ -266,7 +257,7 @@ def contact_normal(
 
 def _kept_normal(
     body: BodyGeometry, other: BodyGeometry, frame: int, depth_m: float
-) -> Float[np.ndarray, "3"] | None:
+) -> Vector | None:
     key = frame, depth_m
     turned = _kept(other, body)
     if key in turned:
@@ -284,7 +275,7 @@ def _kept(body: BodyGeometry, other: BodyGeometry) -> _Normals:
 
 def _patch_normal(
     body: BodyGeometry, other: BodyGeometry, frame: int, depth_m: float
-) -> Float[np.ndarray, "3"] | None:
+) -> Vector | None:
     """The mean normal of the patch where two surfaces meet; None where either has no shape."""
     if body.shape is None or other.shape is None:
         return None
@@ -302,7 +293,7 @@ def _pose(body: BodyGeometry, frame: int) -> bytes:
 
 def _sought_normal(
     body: BodyGeometry, other: BodyGeometry, frame: int, depth_m: float
-) -> Float[np.ndarray, "3"] | None:
+) -> Vector | None:
     assert body.shape is not None
     assert other.shape is not None
     one, two = surface(body.shape), surface(other.shape)
@@ -336,9 +327,7 @@ def _placed(
     return np.asarray(points @ body.turn(frame).T + body.middles[frame])
 
 
-def _between_outlines(
-    body: BodyGeometry, other: BodyGeometry, frame: int
-) -> Float[np.ndarray, "3"]:
+def _between_outlines(body: BodyGeometry, other: BodyGeometry, frame: int) -> Vector:
     """The direction along which two bodies' outermost points are furthest apart.
 
     Sought among the world's and both bodies' axes and the line that joins their middles.

@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from capar.model.capture import Stream
+from capar.model.geometry import Holds, Places, Turns, Vector
 from extractors.bodies.bodies import blocks
 from extractors.bodies.poses import rotation_matrices
 from extractors.contact.surfaces import EXACTNESS_M, Surface, meeting_point, meeting_points
@@ -52,12 +53,8 @@ def sweep(
 ) -> Bool[np.ndarray, "poses"]:
     """Whether the second surface comes within a distance of the first, at each pose.
 
-    Args:
-        first: The surface that stands, the simpler one for speed.
-        second: The surface that moves.
-        turns: Rotation matrices of ``T_first_second``.
-        places: Its places [m].
-        distance_m: Distance up to which they touch [m].
+    ``turns``: rotation matrices of ``T_first_second``. ``places``: its places [m]. ``distance_m``:
+    distance up to which they touch [m].
     """
     if not len(places):
         return np.zeros(0, dtype=bool)
@@ -115,7 +112,7 @@ class _Sweep:
                 idle, patience = 0, FRUITLESS_QUERIES if told else 2 * patience
         return self.known == _TOUCHES
 
-    def _touch(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
+    def _touch(self) -> tuple[Vector | None, float]:
         """A point of the second within the distance, and how far it may move [m]; deepest first.
 
         Where nothing is so deep, what ``_distance`` says.
@@ -129,7 +126,7 @@ class _Sweep:
                 return self._point(meeting), within_m - 2.0 * EXACTNESS_M
         return self._distance()
 
-    def _clearance(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
+    def _clearance(self) -> tuple[Vector | None, float]:
         """How far all may move without touching [m], or else a point as ``_touch`` gives."""
         for level in range(self.level, -1, -1):
             distance = self.distance_m + CLEARANCES_M[level]
@@ -164,7 +161,7 @@ class _Sweep:
         found = result.contacts[0]
         return triangles[found.b1], self.second.triangles[found.b2]
 
-    def _point(self, meeting: _Meeting) -> Float[np.ndarray, "3"]:
+    def _point(self, meeting: _Meeting) -> Vector:
         """A point at which two triangles meet [m]; NaN where they only lie on each other.
 
         The library's own point need not lie on both.
@@ -174,7 +171,7 @@ class _Sweep:
         point = meeting_point(standing.tolist(), moved.tolist())
         return np.full(3, np.nan) if point is None else np.array(point)
 
-    def _distance(self) -> tuple[Float[np.ndarray, "3"] | None, float]:
+    def _distance(self) -> tuple[Vector | None, float]:
         """What ``_touch`` or ``_clearance`` would say with offset surfaces at every distance."""
         # Surfaces that cut each other share points, which tell more poses than a distance of zero.
         meeting = self._meet(0.0, EXACTNESS_M)
@@ -189,9 +186,7 @@ class _Sweep:
         slack = self.distance_m - apart - EXACTNESS_M if apart > 0.0 else 0.0
         return np.asarray(result.nearest_points[1]), slack
 
-    def _propagate(
-        self, index: int, point: Float[np.ndarray, "3"] | None, slack_m: float
-    ) -> tuple[int, int]:
+    def _propagate(self, index: int, point: Vector | None, slack_m: float) -> tuple[int, int]:
         """Decide later poses from the answer at one pose, as far as it reaches.
 
         Returns:
@@ -214,11 +209,7 @@ class _Sweep:
         return told, len(self.known)
 
     def _moved(
-        self,
-        part: slice,
-        index: int,
-        own: Float[np.ndarray, "3"] | None,
-        point: Float[np.ndarray, "3"] | None,
+        self, part: slice, index: int, own: Vector | None, point: Vector | None
     ) -> Float[np.ndarray, "part"]:
         """How far a point of the second, or else any point, has moved since a pose [m]."""
         if own is None or point is None:
@@ -233,13 +224,13 @@ class Body:
     """A surface and its pose at every frame, ready for questions."""
 
     surface: Surface
-    positions: Float[np.ndarray, "frames 3"]
+    positions: Places
     """World positions [m]; NaN where lost."""
 
-    orientations: Float[np.ndarray, "frames 4"]
+    orientations: Turns
     """Unit quaternions w x y z."""
 
-    centres: Float[np.ndarray, "frames 3"]
+    centres: Places
     """Middle of the body's box in the world [m]."""
 
     rests: bool
@@ -274,7 +265,7 @@ def at_frame(surface: Surface, stream: Stream, frame: int) -> Body:
     return Body(surface, place, turn, centre, rests=True)
 
 
-def near(first: Body, second: Body, *, distance_m: float) -> Bool[np.ndarray, "frames"]:
+def near(first: Body, second: Body, *, distance_m: float) -> Holds:
     """At which frames two bodies are within a distance [m]: their surfaces, or one in the other.
 
     Exact to 0.05 mm. Where a body is lost the answer is no. Bodies that are not closed have no
@@ -298,9 +289,7 @@ def near(first: Body, second: Body, *, distance_m: float) -> Bool[np.ndarray, "f
     return out
 
 
-def nearest(
-    first: Body, second: Body, frame: int
-) -> tuple[float, Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+def nearest(first: Body, second: Body, frame: int) -> tuple[float, Vector, Vector]:
     """Distance [m] of two bodies at a frame and the nearest points, each in its body's frame [m].
 
     Where the surfaces cut each other the distance is zero and both points are the middle of the
@@ -341,8 +330,8 @@ def separation(
 
 
 def _apart(
-    first: Surface, second: Surface, turn: Float[np.ndarray, "3 3"], place: Float[np.ndarray, "3"]
-) -> tuple[float, Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+    first: Surface, second: Surface, turn: Float[np.ndarray, "3 3"], place: Vector
+) -> tuple[float, Vector, Vector]:
     """Distance [m] of surfaces that do not cut, and nearest points, in the first's frame [m]."""
     result = fcl.DistanceResult()
     request = fcl.DistanceRequest(enable_nearest_points=True)
@@ -414,8 +403,8 @@ def _nested(
 
 
 def _cut(
-    first: Surface, second: Surface, turn: Float[np.ndarray, "3 3"], place: Float[np.ndarray, "3"]
-) -> Float[np.ndarray, "3"] | None:
+    first: Surface, second: Surface, turn: Float[np.ndarray, "3 3"], place: Vector
+) -> Vector | None:
     """Middle of the places where two surfaces cut each other [m], in the first's frame, if any."""
     request = fcl.CollisionRequest(num_max_contacts=1000, enable_contact=True)
     result = fcl.CollisionResult()
@@ -455,11 +444,8 @@ def screened(
     no further from either than they are from each other: of a ball in a bowl on a floor, the floor
     is not between the ball and the bowl, although the longer line reaches it.
 
-    Args:
-        meetings: Contacts.
-        bodies: Surfaces with their poses, by name.
-        screens: Names of bodies that may be in between.
-        reach_m: By how much the line is made longer at either end [m].
+    ``meetings``: contacts. ``screens``: names of bodies that may be in between. ``reach_m``: by how
+    much the line is made longer at either end [m].
     """
     touches: dict[str, dict[str, list[Interval]]] = defaultdict(lambda: defaultdict(list))
     for one, two, span in meetings:

@@ -11,6 +11,7 @@ import trimesh
 from jaxtyping import Bool, Float, Int
 
 from capar.model.capture import Shape
+from capar.model.geometry import Vector
 
 EXACTNESS_M = 0.00004
 """How far an offset surface may lie from its true distance [m]."""
@@ -24,11 +25,9 @@ def offset_surface(
     None lies further out than that distance and the exactness; together they leave no way in
     that is not within the exactness of that distance.
 
-    Args:
-        mesh: The surface.
-        distance_m: The distance [m].
-        closed: Whether it bounds a solid, so that nothing is needed on its inner side.
-        exactness_m: How far the offset surface may lie from its true distance [m].
+    ``mesh``: the surface. ``distance_m``: the distance [m]. ``closed``: whether it bounds a solid,
+    so that nothing is needed on its inner side. ``exactness_m``: how far the offset surface may lie
+    from its true distance [m].
     """
     vertices = np.asarray(mesh.vertices, float)
     faces = np.asarray(mesh.faces)
@@ -248,7 +247,7 @@ class Surface:
         return bool(self.closed and self.mesh.volume < 0.0)
 
     @cached_property
-    def centre(self) -> Float[np.ndarray, "3"]:
+    def centre(self) -> Vector:
         """Middle of its box [m], in the body's frame."""
         return np.asarray(self.shape.bounds.mean(axis=0))
 

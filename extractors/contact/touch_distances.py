@@ -7,12 +7,13 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 import trimesh
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 from capar.model import geometry
 from capar.model.calibration import Found, PairCalibration
 from capar.model.capture import Capture, Role, Shape, ShapeSource, Stream, TagType
+from capar.model.geometry import Holds, Places, Series
 from extractors.bodies.bodies import Bodies, BodyGeometry
 from extractors.bodies.poses import rotation_matrices
 from extractors.contact.proximity import Body, at_frame, body, distance
@@ -21,15 +22,15 @@ from extractors.motion.object_motion import motion_floor, rest_poses, resting
 from extractors.signals.intervals import frame_rate, mask
 from extractors.thresholds import Thresholds
 
-Points = Float[np.ndarray, "frames 3"]
+Points = Places
 
 
-def travelling(stream: Stream, thresholds: Thresholds) -> Bool[np.ndarray, "frames"]:
+def travelling(stream: Stream, thresholds: Thresholds) -> Holds:
     """Where a body covers some way in the world within the window of co-motion."""
     return spread(stream.positions, stream, thresholds) >= thresholds.co_motion_way_m
 
 
-def steady_in(carrier: Stream, thing: Stream, thresholds: Thresholds) -> Bool[np.ndarray, "frames"]:
+def steady_in(carrier: Stream, thing: Stream, thresholds: Thresholds) -> Holds:
     """Where a thing covers some way in the world and stays where it is in a carrier's frame.
 
     Or the carrier stays where it is in the thing's frame, as a hand does that takes a large thing
@@ -66,7 +67,7 @@ def relative(frame_of: Stream, thing: Stream, some: slice) -> Points:
     return np.asarray(np.einsum("fji,fj->fi", turns, offset))
 
 
-def spread(points: Points, stream: Stream, thresholds: Thresholds) -> Float[np.ndarray, "frames"]:
+def spread(points: Points, stream: Stream, thresholds: Thresholds) -> Series:
     """Diagonal of the box that points cover within the window around each frame [m].
 
     It is NaN where one of them is not known.
@@ -86,7 +87,7 @@ def _half_window(stream: Stream, thresholds: Thresholds) -> int:
     return max(1, round(0.5 * thresholds.co_motion_window_s * frame_rate(stream.times)))
 
 
-def _widened(holds: Bool[np.ndarray, "frames"], reach: int) -> Bool[np.ndarray, "frames"]:
+def _widened(holds: Holds, reach: int) -> Holds:
     """Where something holds at a frame no further away than so many."""
     wide = maximum_filter1d(holds.view(np.uint8), 2 * reach + 1, mode="nearest")
     return np.asarray(wide.astype(bool))
@@ -102,13 +103,13 @@ class TouchPoints:
     first: Vector = (0.0, 0.0, 0.0)
     second: Vector = (0.0, 0.0, 0.0)
 
-    def apart(self, first: Stream, second: Stream) -> Float[np.ndarray, "frames"]:
+    def apart(self, first: Stream, second: Stream) -> Series:
         """Distance of the two points [m]; NaN where either body is lost."""
         return np.asarray(np.linalg.norm(_at(first, self.first) - _at(second, self.second), axis=1))
 
 
 def touch_points(
-    first: Stream, second: Stream, frames: Bool[np.ndarray, "frames"], thresholds: Thresholds
+    first: Stream, second: Stream, frames: Holds, thresholds: Thresholds
 ) -> TouchPoints:
     """The points that stay nearest to each other through some frames, by least squares.
 
@@ -127,14 +128,14 @@ def touch_points(
     return TouchPoints((found[0], found[1], found[2]), (found[3], found[4], found[5]))
 
 
-def _at(stream: Stream, point: Vector) -> Float[np.ndarray, "frames 3"]:
+def _at(stream: Stream, point: Vector) -> Places:
     return np.asarray(stream.positions + rotation_matrices(stream.orientations) @ np.array(point))
 
 
 HAND = "hand"
 """The end-effector that takes hold of things it does not move."""
 
-Frames = Bool[np.ndarray, "frames"]
+Frames = Holds
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,7 +208,7 @@ class Evidence:
         self, own: BodyGeometry, frames: Frames, apart: Frames, others: list[BodyGeometry]
     ) -> dict[str, Frames]:
         """By object that rests by itself, where it is the nearest, if nearer than when apart."""
-        gaps: dict[str, Float[np.ndarray, "frames"]] = {}
+        gaps: dict[str, Series] = {}
         for other in others:
             gap = _origins_apart(own, other)
             limit = self.thresholds.settle_reach_m
@@ -288,7 +289,7 @@ class Evidence:
         return out
 
 
-def _origins_apart(one: BodyGeometry, other: BodyGeometry) -> Float[np.ndarray, "frames"]:
+def _origins_apart(one: BodyGeometry, other: BodyGeometry) -> Series:
     offset = one.poses.settled.positions - other.poses.settled.positions
     return np.asarray(np.linalg.norm(offset, axis=1))
 
@@ -312,12 +313,8 @@ def estimated_pair(
 ) -> PairCalibration:
     """At which distance two bodies touch, one of which has no surface.
 
-    Args:
-        capture: The trial.
-        first: An end-effector, or a mobile object.
-        second: An object.
-        evidence: What the bodies do to each other.
-        tolerance_m: What is added to where a thing rests on a support [m].
+    ``evidence``: what the bodies do to each other. ``tolerance_m``: what is added to where a thing
+    rests on a support [m].
     """
     limits = evidence.thresholds
     for found, frames in _witnesses(capture, first.name, second.name, evidence):
@@ -385,7 +382,7 @@ def with_gaps(
 
 def _witnesses(
     capture: Capture, first: str, second: str, evidence: Evidence
-) -> Iterator[tuple[Found, Bool[np.ndarray, "frames"]]]:
+) -> Iterator[tuple[Found, Holds]]:
     """Kinds of evidence for a pair, the surest first."""
     nowhere = np.zeros(len(capture.times), dtype=bool)
     acting = {each.name: each.end_effector for each in capture.sensors if each.role is Role.ACTS}
@@ -406,7 +403,7 @@ def _pair(
     first: BodyGeometry,
     second: BodyGeometry,
     found: Found,
-    frames: Bool[np.ndarray, "frames"],
+    frames: Holds,
     margin_m: float,
     thresholds: Thresholds,
 ) -> PairCalibration:
@@ -432,7 +429,7 @@ def _pair(
 
 
 def _surface_distances(
-    first: BodyGeometry, second: BodyGeometry, frames: Bool[np.ndarray, "frames"], most: int
+    first: BodyGeometry, second: BodyGeometry, frames: Holds, most: int
 ) -> Float[np.ndarray, "some"]:
     """How far two bodies are apart in some of the frames [m]; a body without shape is a point."""
     every = np.flatnonzero(frames)

@@ -9,7 +9,8 @@ from jaxtyping import Float
 
 from capar.model.capture import Capture, TagType
 from capar.model.facts import Touching
-from capar.model.observation import ForceStyle, Vector
+from capar.model.geometry import Places, Series, Vector
+from capar.model.observation import ForceStyle
 from extractors.bodies.bodies import Bodies, BodyGeometry
 from extractors.forces.free_motion import (
     GRAVITY_MPS2,
@@ -34,20 +35,11 @@ LATE_SHARE = 0.8
 """The thesis fits the first part of a slide: at its end, both quantities vanish [1]."""
 
 
-def velocity_at(
-    times: Float[np.ndarray, "frames"],
-    places: Float[np.ndarray, "frames 3"],
-    at_s: float,
-    *,
-    degree: int = 2,
-) -> Float[np.ndarray, "3"]:
+def velocity_at(times: Series, places: Places, at_s: float, *, degree: int = 2) -> Vector:
     """The velocity at a time by a polynomial fitted to places [m/s].
 
-    Args:
-        times: Of the places [s].
-        places: Recorded ones; lost ones are NaN [m].
-        at_s: When [s].
-        degree: Of the polynomial [1].
+    ``places``: recorded ones; lost ones are NaN [m]. ``at_s``: when [s]. ``degree``: of the
+    polynomial [1].
     """
     known = ~np.isnan(places[:, 0])
     if known.sum() <= degree:
@@ -56,18 +48,13 @@ def velocity_at(
     return np.asarray(np.linalg.lstsq(powers, places[known], rcond=None)[0][1])
 
 
-def velocities_about(
-    times: Float[np.ndarray, "frames"], places: Float[np.ndarray, "frames 3"], at_s: float
-) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+def velocities_about(times: Series, places: Places, at_s: float) -> tuple[Vector, Vector]:
     """The velocities just before and just after a blow [m/s].
 
     Both ways are quadratic in time and meet in one place, which makes the fit less sensitive to
     noise than two fits would be.
 
-    Args:
-        times: Of places on both sides of the blow [s].
-        places: Recorded ones; lost ones are NaN [m].
-        at_s: When the blow is [s].
+    ``places``: recorded ones; lost ones are NaN [m]. ``at_s``: when the blow is [s].
     """
     near = (np.abs(times - at_s) <= VELOCITY_S) & ~np.isnan(places[:, 0])
     past = times[near] - at_s
@@ -77,17 +64,13 @@ def velocities_about(
     return np.asarray(found[1]), np.asarray(found[3])
 
 
-def restitution(
-    before: Float[np.ndarray, "3"], after: Float[np.ndarray, "3"], thing: Float[np.ndarray, "3"]
-) -> float | None:
+def restitution(before: Vector, after: Vector, thing: Vector) -> float | None:
     """Coefficient of restitution of a blow at a thing at rest (thesis eq. 3.5).
 
     The line of impact is the way that the thing takes: without friction there is no other force.
 
-    Args:
-        before: The striker's velocity before the impact [m/s].
-        after: The striker's velocity after it [m/s].
-        thing: The thing's velocity after it [m/s].
+    ``before``: the striker's velocity before the impact [m/s]. ``after``: the striker's velocity
+    after it [m/s].
 
     Returns:
         None where the striker does not go towards the thing.
@@ -97,17 +80,13 @@ def restitution(
     return None if closing <= 0.0 else float((thing - after) @ line) / closing
 
 
-def thesis_damping(
-    times: Float[np.ndarray, "frames"], velocities: Float[np.ndarray, "frames 3"]
-) -> tuple[float, float] | None:
+def thesis_damping(times: Series, velocities: Places) -> tuple[float, float] | None:
     """The thesis's damping: the slope of acceleration over velocity against time (eq. 3.7-3.11).
 
     It is no physical coefficient, since it vanishes where the deceleration is proportional to the
     speed; ``Fit.damping`` is one. The end of the slide is left out, as the thesis does.
 
-    Args:
-        times: Of the slide [s].
-        velocities: Then [m/s].
+    ``velocities``: then [m/s].
 
     Returns:
         Along x and y [1/s^2]; None where the slide is too short.
@@ -162,8 +141,8 @@ class Fit:
     """What a path says of a thing that moves on alone."""
 
     start_s: float
-    position: Float[np.ndarray, "3"]
-    velocity: Float[np.ndarray, "3"]
+    position: Vector
+    velocity: Vector
     damping: tuple[float, float] | None
     bounce: float | None
     residual_m: float
@@ -172,11 +151,11 @@ class Fit:
 
 
 def fit_free_motion(
-    times: Float[np.ndarray, "frames"],
-    places: Float[np.ndarray, "frames 3"],
+    times: Series,
+    places: Places,
     *,
-    rested: Float[np.ndarray, "3"] | None,
-    half: Float[np.ndarray, "3"],
+    rested: Vector | None,
+    half: Vector,
     surfaces: Sequence[Surface],
 ) -> Fit | None:
     """The motion from rest or from the hand that fits a path best, by least squares.
@@ -184,13 +163,9 @@ def fit_free_motion(
     What is closed form is fitted first: the slide, or the flight to the first landing. How it
     bounces, and its damping where it slides only later, are fitted over the integrated motion.
 
-    Args:
-        times: From the frame of contact on [s].
-        places: Of the thing's middle, as recorded [m].
-        rested: Where its middle rested until about the first time [m]; None of a thing that was
-            let go in motion.
-        half: Half of its lengths along the world's axes [m].
-        surfaces: What may bear it.
+    ``places``: of the thing's middle, as recorded [m]. ``rested``: where its middle rested until
+    about the first time [m]; None of a thing that was let go in motion. ``half``: half of its
+    lengths along the world's axes [m]. ``surfaces``: what may bear it.
 
     Returns:
         None where the path is too short.
@@ -226,18 +201,18 @@ class _Begin:
     """Where and how fast a thing is when it begins to move alone."""
 
     start_s: float
-    place: Float[np.ndarray, "3"]
-    velocity: Float[np.ndarray, "3"]
+    place: Vector
+    velocity: Vector
 
 
 @dataclass(frozen=True, eq=False)
 class _Course:
     """A recorded path and where it begins."""
 
-    times: Float[np.ndarray, "frames"]
-    places: Float[np.ndarray, "frames 3"]
+    times: Series
+    places: Places
     begin: _Begin
-    half: Float[np.ndarray, "3"]
+    half: Vector
     surfaces: Sequence[Surface]
 
     def motion(self, damping: tuple[float, float], bounce: float) -> FreeMotion:
@@ -283,11 +258,7 @@ class _Course:
 
 
 def _level(
-    times: Float[np.ndarray, "frames"],
-    places: Float[np.ndarray, "frames 3"],
-    rested: Float[np.ndarray, "3"] | None,
-    half: Float[np.ndarray, "3"],
-    surfaces: Sequence[Surface],
+    times: Series, places: Places, rested: Vector | None, half: Vector, surfaces: Sequence[Surface]
 ) -> float | None:
     """The height of the middle of a thing that begins on a surface and stays on it [m]."""
     early = times <= times[0] + SLIDES_S
@@ -301,10 +272,7 @@ def _level(
 
 
 def _slide(
-    times: Float[np.ndarray, "frames"],
-    places: Float[np.ndarray, "frames 3"],
-    rested: Float[np.ndarray, "3"] | None,
-    level: float,
+    times: Series, places: Places, rested: Vector | None, level: float
 ) -> tuple[_Begin | None, tuple[float, float] | None]:
     """Start, velocity and damping of a slide: x = x0 + v (1 - exp(-k t)) / k along each axis."""
     from scipy.optimize import least_squares
@@ -350,10 +318,7 @@ def _slide(
 
 
 def _flight(
-    times: Float[np.ndarray, "frames"],
-    places: Float[np.ndarray, "frames 3"],
-    half: Float[np.ndarray, "3"],
-    surfaces: Sequence[Surface],
+    times: Series, places: Places, half: Vector, surfaces: Sequence[Surface]
 ) -> _Begin | None:
     """Place and velocity of a thing in the air, by the flight to its first landing."""
     last = len(times)
@@ -389,7 +354,7 @@ def _lands(motion: FreeMotion) -> bool:
     return bool((down[:-1] & (motion.velocities[1:, 2] >= 0.0)).any())
 
 
-def _slid_s(motion: FreeMotion, times: Float[np.ndarray, "frames"]) -> float:
+def _slid_s(motion: FreeMotion, times: Series) -> float:
     """How long it slid [s]."""
     starts = [*(at for at, _ in motion.phases), float(times[-1])]
     spans = ((phase, starts[n + 1] - at) for n, (at, phase) in enumerate(motion.phases))
@@ -397,7 +362,7 @@ def _slid_s(motion: FreeMotion, times: Float[np.ndarray, "frames"]) -> float:
 
 
 def _thinned(
-    times: Float[np.ndarray, "frames"], places: Float[np.ndarray, "frames 3"]
+    times: Series, places: Places
 ) -> tuple[Float[np.ndarray, "some"], Float[np.ndarray, "some 3"]]:
     step = max(1, -(-len(times) // MOST))
     return times[::step], places[::step]
@@ -428,19 +393,14 @@ def force_styles(
     facts: Iterable[object],
     guided: Collection[str] = (),
     *,
-    times: Float[np.ndarray, "frames"] | None = None,
+    times: Series | None = None,
 ) -> tuple[ForceStyle, ...]:
     """How end-effectors set things going that moved on alone, in order of time.
 
     A thing keeps its orientation in the model, and is borne by level tops of fixed objects and by
     the ground, which is the lowest of them or, if that is higher, z = 0.
 
-    Args:
-        capture: The trial.
-        bodies: Its bodies.
-        facts: What was measured of it.
-        guided: Objects on hinges and rails, which do not move freely.
-        times: The clock of the bodies [s]; None where they are of the capture itself.
+    ``guided``: objects on hinges and rails, which do not move freely.
     """
     clock = capture.times if times is None else times
     touching = [fact for fact in facts if isinstance(fact, Touching)]
@@ -461,7 +421,7 @@ def force_styles(
 def _style(
     capture: Capture,
     bodies: Bodies,
-    times: Float[np.ndarray, "frames"],
+    times: Series,
     contact: Touching,
     others: list[Touching],
     surfaces: list[Surface],
@@ -494,9 +454,7 @@ def _last_alone(contact: Touching, others: list[Touching], frames: int) -> int |
     return min((c.first for c in others if c.first > contact.last), default=frames) - 1
 
 
-def _gone(
-    times: Float[np.ndarray, "frames"], places: Float[np.ndarray, "frames 3"]
-) -> float | None:
+def _gone(times: Series, places: Places) -> float | None:
     """How far a thing goes [m]; None where it does not go off at once, or was lost."""
     gone = np.linalg.norm(places - places[0], axis=1)
     soon = times <= times[0] + VELOCITY_S
@@ -509,7 +467,7 @@ def _gone(
 def _stated(
     capture: Capture,
     bodies: Bodies,
-    times: Float[np.ndarray, "frames"],
+    times: Series,
     contact: Touching,
     found: Fit,
     span: slice,
@@ -538,18 +496,14 @@ def _stated(
     )
 
 
-def _striker(
-    body: BodyGeometry, times: Float[np.ndarray, "frames"], at_s: float
-) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
+def _striker(body: BodyGeometry, times: Series, at_s: float) -> tuple[Vector, Vector]:
     """The velocities of an end-effector just before and just after a time [m/s]."""
     first, last = np.searchsorted(times, [at_s - VELOCITY_S, at_s + VELOCITY_S])
     span = slice(int(first), int(last))
     return velocities_about(times[span], recorded_middles(body, span), at_s)
 
 
-def _rested(
-    thing: BodyGeometry, contact: Touching, times: Float[np.ndarray, "frames"]
-) -> Float[np.ndarray, "3"] | None:
+def _rested(thing: BodyGeometry, contact: Touching, times: Series) -> Vector | None:
     """Where a thing rested before a blow [m]; None where it moved, or was not struck."""
     if times[contact.last] - times[contact.first] > SHORT_S:
         return None
@@ -562,7 +516,7 @@ def _rested(
     return None if drift > GOES_MPS * RESTED_S * 0.5 else np.nanmedian(places, axis=0)
 
 
-def _sliding(found: Fit, clock: Float[np.ndarray, "frames"]) -> tuple[float, float] | None:
+def _sliding(found: Fit, clock: Series) -> tuple[float, float] | None:
     """When its first slide began and ended [s]."""
     starts = [*(at for at, _ in found.motion.phases), float(clock[-1])]
     for number, (at, phase) in enumerate(found.motion.phases):
@@ -572,7 +526,7 @@ def _sliding(found: Fit, clock: Float[np.ndarray, "frames"]) -> tuple[float, flo
 
 
 def _thesis(
-    thing: BodyGeometry, times: Float[np.ndarray, "frames"], slides: tuple[float, float] | None
+    thing: BodyGeometry, times: Series, slides: tuple[float, float] | None
 ) -> tuple[float, float] | None:
     if slides is None:
         return None
@@ -600,12 +554,12 @@ def _surfaces(capture: Capture, bodies: Bodies) -> list[Surface]:
     return [*out, Surface(ground)]
 
 
-def _extent(body: BodyGeometry, frame: int) -> Float[np.ndarray, "3"]:
+def _extent(body: BodyGeometry, frame: int) -> Vector:
     """Lengths of a body's surface along the world's axes [m]."""
     assert body.shape is not None
     return np.asarray(np.ptp(np.array(body.shape.vertices) @ body.turn(frame).T, axis=0))
 
 
-def _vector(values: Float[np.ndarray, "3"]) -> Vector:
+def _vector(values: Vector) -> tuple[float, float, float]:
     x, y, z = (float(value) for value in values)
     return x, y, z

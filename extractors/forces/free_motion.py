@@ -11,6 +11,8 @@ from enum import StrEnum
 import numpy as np
 from jaxtyping import Float
 
+from capar.model.geometry import Vector
+
 GRAVITY_MPS2 = 9.81
 """Standard acceleration of free fall, rounded [m/s^2]."""
 
@@ -80,23 +82,19 @@ State = Float[np.ndarray, "6"]
 
 
 def free_motion(
-    place: Float[np.ndarray, "3"],
-    velocity: Float[np.ndarray, "3"],
+    place: Vector,
+    velocity: Vector,
     times: Float[np.ndarray, "times"],
     *,
-    half: Float[np.ndarray, "3"],
+    half: Vector,
     surfaces: Sequence[Surface],
     resistance: Resistance,
 ) -> FreeMotion:
     """The way of a thing from a place and a velocity, by Runge-Kutta with events.
 
-    Args:
-        place: Its middle at the first time [m].
-        velocity: Then [m/s].
-        times: Ascending [s].
-        half: Half of its lengths along the world's axes [m].
-        surfaces: What may bear it.
-        resistance: What takes its speed.
+    ``place``: its middle at the first time [m]. ``velocity``: then [m/s]. ``half``: half of its
+    lengths along the world's axes [m]. ``surfaces``: what may bear it. ``resistance``: what takes
+    its speed.
     """
     from scipy.integrate import solve_ivp  # takes long to import, and few captures need it
 
@@ -152,9 +150,7 @@ def energy(motion: FreeMotion) -> Float[np.ndarray, "times"]:
     return np.asarray(0.5 * pace + GRAVITY_MPS2 * motion.positions[:, 2])
 
 
-def _bearing(
-    state: State, half: Float[np.ndarray, "3"], surfaces: Sequence[Surface]
-) -> Surface | None:
+def _bearing(state: State, half: Vector, surfaces: Sequence[Surface]) -> Surface | None:
     """What the thing is on; None where it is in the air."""
     for surface in surfaces:
         on = abs(state[2] - half[2] - surface.top_m) < 1e-6 and abs(state[5]) < SETTLES_MPS
@@ -164,20 +160,20 @@ def _bearing(
 
 
 def _land_on(
-    state: State, half: Float[np.ndarray, "3"], surfaces: Sequence[Surface], resistance: Resistance
+    state: State, half: Vector, surfaces: Sequence[Surface], resistance: Resistance
 ) -> None:
     for surface in surfaces:
         if _hits(state, half, surface):
             _land(state, half, surface, resistance)
 
 
-def _hits(state: State, half: Float[np.ndarray, "3"], surface: Surface) -> bool:
+def _hits(state: State, half: Vector, surface: Surface) -> bool:
     """Whether the thing is at a surface already, on its way down."""
     at = abs(state[2] - half[2] - surface.top_m) < 1e-6
     return bool(at and state[5] < 0.0 and _above(state, half, surface))
 
 
-def _above(state: State, half: Float[np.ndarray, "3"], surface: Surface) -> bool:
+def _above(state: State, half: Vector, surface: Surface) -> bool:
     low, high = state[:2] - half[:2], state[:2] + half[:2]
     return bool((high > np.array(surface.low)).all() and (low < np.array(surface.high)).all())
 
@@ -206,7 +202,7 @@ def _sliding(resistance: Resistance) -> Slope:
     return slope
 
 
-def _ends_of_slide(surface: Surface, half: Float[np.ndarray, "3"]) -> list[Event]:
+def _ends_of_slide(surface: Surface, half: Vector) -> list[Event]:
     """The thing rests, or (``LEAVES``) the last of it is over an edge."""
     low, high = np.array(surface.low) - half[:2], np.array(surface.high) + half[:2]
 
@@ -220,7 +216,7 @@ def _ends_of_slide(surface: Surface, half: Float[np.ndarray, "3"]) -> list[Event
     return [_terminal(rests), _terminal(leaves)]
 
 
-def _landing(surface: Surface, half: Float[np.ndarray, "3"]) -> Event:
+def _landing(surface: Surface, half: Vector) -> Event:
     def lands(_: float, state: State) -> float:
         return float(state[2] - half[2] - surface.top_m)
 
@@ -233,7 +229,7 @@ def _terminal(event: Event) -> Event:
 
 
 def _land(
-    state: State, half: Float[np.ndarray, "3"], surface: Surface, resistance: Resistance
+    state: State, half: Vector, surface: Surface, resistance: Resistance
 ) -> tuple[Surface, ...]:
     """Turn the speed of a thing that lands; what it passes beside is returned."""
     if not _above(state, half, surface):

@@ -3,6 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
+from capar.model.geometry import Series
 from extractors.bodies.bodies import BodyGeometry
 from extractors.bodies.poses import rotation_matrices
 from extractors.signals.filters import speed, velocity
@@ -57,7 +58,7 @@ def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
     return max(float(speeds.max()), *slopes)
 
 
-def _before(times: Float[np.ndarray, "frames"], frame: int, span_s: float) -> int:
+def _before(times: Series, frame: int, span_s: float) -> int:
     """The frame nearest to so long before another [s]: a slow clock has one, if not within it."""
     wanted = times[frame] - span_s
     later = int(np.searchsorted(times, wanted))

@@ -9,6 +9,7 @@ from jaxtyping import Float, Int
 
 from capar.model import geometry
 from capar.model.capture import Stream
+from capar.model.geometry import Quaternion, Series, Vector
 from extractors.bodies.bodies import BodyGeometry
 from extractors.bodies.poses import Poses, median_pose, rotation_matrices
 from extractors.motion.object_motion import Floor, RestPose, rests_at
@@ -16,7 +17,7 @@ from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, first_where, frame_rate, last_where
 from extractors.thresholds import Thresholds
 
-Ways = Float[np.ndarray, "frames"]
+Ways = Series
 
 STROKES_S = tuple(0.15 * 40.0 ** (step / 11.0) for step in range(12))
 """Durations of smooth strokes (minimum jerk; Flash and Hogan 1985) that are tried [s]: from the
@@ -67,16 +68,12 @@ def onset(
 ) -> int:
     """The frame at which a displacement began to grow from nothing.
 
-    Args:
-        way: The displacement along one direction, from a place of rest to where it is well beyond,
-            in units of what is seen of it [1]; NaN where it was lost.
-        smooth: The same, low-passed.
-        seen: The frame at which it is first seen to have left the place.
-        noise: Deviation of each displacement that is not low-passed [1].
-        place: Deviation of the place from where it was taken to be [1].
-        most: How many frames before it is seen it began at most.
-        rest: How many frames are looked at before that.
-        rate_hz: Frames a second [Hz].
+    ``way``: the displacement along one direction, from a place of rest to where it is well beyond,
+    in units of what is seen of it [1]; NaN where it was lost. ``smooth``: the same, low-passed.
+    ``seen``: the frame at which it is first seen to have left the place. ``noise``: deviation of
+    each displacement that is not low-passed [1]. ``place``: deviation of the place from where it
+    was taken to be [1]. ``most``: how many frames before it is seen it began at most. ``rest``: how
+    many frames are looked at before that.
     """
     lost = np.isnan(way)
     before, after = np.flatnonzero(lost[:seen]), np.flatnonzero(lost[seen:])
@@ -139,10 +136,8 @@ def beginning_s(track: Growth, earliest_s: float, latest_s: float) -> float:
     far back it is followed: by as many times less as what is left is larger than noise (reduced
     chi-squared).
 
-    Args:
-        track: The displacement, from the place before on.
-        earliest_s: No earlier than this, which is not after 0.
-        latest_s: No later than this, which is not before 0.
+    ``track``: the displacement, from the place before on. ``earliest_s``: no earlier than this,
+    which is not after 0. ``latest_s``: no later than this, which is not before 0.
     """
     if earliest_s >= latest_s:
         return latest_s
@@ -205,7 +200,7 @@ class Direction:
     """Where a body goes to, or about what it turns, from a place."""
 
     stay: RestPose
-    to: Float[np.ndarray, "3"]
+    to: Vector
     """Direction in the world, in units of displacement [1/m or 1/rad]."""
 
     turns: bool
@@ -229,10 +224,10 @@ class Direction:
 class Mount:
     """How a body sits on another one that it moves with."""
 
-    lever: Float[np.ndarray, "3"]
+    lever: Vector
     """Its origin in the frame of the other [m]."""
 
-    turn: Float[np.ndarray, "4"]
+    turn: Quaternion
     """Its orientation in that frame, a unit quaternion w x y z."""
 
     def carried(self, stream: Stream, frames: Frames) -> tuple[Places, Turns]:
@@ -258,14 +253,9 @@ def way_out(
     the two differ by beyond noise, as while the hand still comes near, adds to the variance of what
     the hand tells.
 
-    Args:
-        poses: The body's poses.
-        partners: Those of what may move as one with it.
-        frames: From the place to where it is well beyond it.
-        seen: Index of the one at which it is first seen to have left the place.
-        stay: The place.
-        unit: The unit of displacement.
-        left: What the filter leaves of a deviation of noise [1].
+    ``seen``: index of the one at which it is first seen to have left the place. ``stay``: the
+    place. ``unit``: the unit of displacement. ``left``: what the filter leaves of a deviation of
+    noise [1].
 
     Returns:
         Displacement as recorded and low-passed, and the deviation of each recorded one [1].
@@ -361,14 +351,7 @@ def motion_edges(
     motion at the slowest does, drifts until then. What was nudged or wobbled, and for the least
     duration of a rest went no farther away, sets off from there.
 
-    Args:
-        poses: The object's poses.
-        moved: Frames in which it is beyond the floor of motion.
-        rests: Places where it rests, in time.
-        floor: The floor of its motion.
-        thresholds: Least displacement, and deviations of noise that it must exceed.
-        partners: Poses of what touches the object meanwhile: where it moves as one with the object,
-            it tells of the same motion with noise of its own.
+    ``moved``: frames in which it is beyond the floor of motion.
     """
     before = [each for each in rests if each.interval[0] < moved[0]]
     after = [each for each in rests if each.interval[1] > moved[1]]
@@ -437,15 +420,7 @@ def _nudged(
     near: Floor,
     thresholds: Thresholds,
 ) -> RestPose | None:
-    """Where an object stood beside its place of rest, next to its motion; None if it did not.
-
-    Args:
-        poses: The object's poses.
-        frames: From the motion to where it is at its place of rest.
-        stay: That place.
-        near: The unit of its displacement.
-        thresholds: The least duration of a rest.
-    """
+    """Where an object stood beside its place of rest, next to its motion; None if it did not."""
     window = max(1, round(thresholds.rest_minimum_s * frame_rate(poses.filled.times)))
     grows = growth(poses, frames, stay, near)
     with np.errstate(invalid="ignore"):
@@ -477,18 +452,7 @@ def _onset(
     thresholds: Thresholds,
     partners: Collection[Poses],
 ) -> int:
-    """The frame at which a motion out of a place truly began, or one into it truly ended.
-
-    Args:
-        poses: The object's poses.
-        stay: The place.
-        motion: The frame next to the place at which the object is a hair beyond it, and the one at
-            the other end of the motion.
-        step: 1 out of the place, -1 where the motion leads to it.
-        floor: The floor of its motion, as far as which it is followed at least.
-        thresholds: What a hair is, and how long it takes at most to go so far.
-        partners: Poses of what may move as one with it.
-    """
+    """The frame at which a motion out of a place truly began, or one into it truly ended."""
     near, rate_hz = hair(poses, thresholds), frame_rate(poses.filled.times)
     most, rest = longest(poses, near, thresholds), round(thresholds.rest_minimum_s * rate_hz)
     edge, start = motion[0], stay.interval[0 if step > 0 else 1]
@@ -578,13 +542,6 @@ def seat(
     its lowest point was last no more than a hair above its level before that, as far back as it was
     no higher than a hair above the lowest; and likewise at the beginning. What rises as soon as it
     has come down is down where it was lowest.
-
-    Args:
-        body: What lies on the other.
-        other: What bears it.
-        contact: First and last frame of their contact.
-        motions: When either of them moves; at rest nothing comes down or leaves.
-        thresholds: What a hair is.
     """
     first, last = contact
     height = body.boxes[0][:, 2] - other.middles[:, 2]
@@ -605,11 +562,7 @@ def seat(
 
 
 def _settled(
-    height: Float[np.ndarray, "frames"],
-    outside: Float[np.ndarray, "others"],
-    least: float,
-    most: int,
-    lies: int,
+    height: Series, outside: Float[np.ndarray, "others"], least: float, most: int, lies: int
 ) -> int:
     """How many frames pass before it is down, from the first on, as far as it was not lost.
 
@@ -645,10 +598,8 @@ def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> in
     The power is the one of ``POWERS`` that agrees best with when it was half as large, in powers
     of ten, as in the end.
 
-    Args:
-        grows: The displacement, from where it is about 1 on.
-        reach: How large it should have grown for this to be told [1]; less if it never is.
-        most: The answer at most.
+    ``grows``: the displacement, from where it is about 1 on. ``reach``: how large it should have
+    grown for this to be told [1]; less if it never is. ``most``: the answer at most.
     """
     if not grows.size or np.isnan(grows[0]):
         return 0

@@ -12,6 +12,7 @@ from scipy.ndimage import correlate1d
 
 from capar.model import geometry
 from capar.model.capture import Stream
+from capar.model.geometry import Holds, Quaternion, Series, Vector
 from extractors.bodies.poses import Poses, median_pose
 from extractors.signals.filters import Noise, gains
 from extractors.signals.intervals import (
@@ -30,10 +31,10 @@ class RestPose:
     """A place where an object rests, and the frames through which it is there."""
 
     interval: Interval
-    position: Float[np.ndarray, "3"]
+    position: Vector
     """World position [m]."""
 
-    orientation: Float[np.ndarray, "4"]
+    orientation: Quaternion
     """Unit quaternion w x y z."""
 
     frames: int
@@ -64,11 +65,8 @@ def motion_floor(
 ) -> Floor:
     """The floor of an object's motion: its own if it has one, else above the noise.
 
-    Args:
-        noise: Noise of the object's unfiltered stream.
-        rate_hz: Frames a second [Hz].
-        own_m: The floor that the capture states for this object [m], which holds as it is.
-        thresholds: Least floors, and deviations of noise that they must exceed.
+    ``noise``: noise of the object's unfiltered stream. ``own_m``: the floor that the capture states
+    for this object [m], which holds as it is.
     """
     left = thresholds.motion_sigmas * gains(rate_hz, thresholds)[0]
     place = max(thresholds.motion_floor_m, left * noise.position_m)
@@ -144,15 +142,7 @@ def _rest_poses(
 def _stays(
     streams: tuple[Stream, Stream], seed: Interval, floor: Floor, least: int, begins: int
 ) -> Iterator[RestPose]:
-    """The place of a slow stretch; of one that creeps beyond the floor of it, one place each.
-
-    Args:
-        streams: The object's poses, low-passed and as recorded.
-        seed: The slow stretch.
-        floor: Displacement from a place below which it is still there.
-        least: Fewest frames of a rest [1].
-        begins: How many frames tell the place to which it came [1].
-    """
+    """The place of a slow stretch; of one that creeps beyond the floor of it, one place each."""
     stay = _stay(streams, seed, floor, begins)
     begin, end = stay.interval
     if begin - seed[0] >= least:
@@ -205,9 +195,7 @@ def _meet(one: Interval, other: Interval) -> bool:
     return one[0] <= other[1] and other[0] <= one[1]
 
 
-def slow_frames(
-    stream: Stream, noise: Noise, rate_hz: float, thresholds: Thresholds
-) -> Bool[np.ndarray, "frames"]:
+def slow_frames(stream: Stream, noise: Noise, rate_hz: float, thresholds: Thresholds) -> Holds:
     """Whether the way's slope over the window of rest is no more than noise makes it."""
     speed_mps, turning_radps = pace_at_rest(noise, rate_hz, thresholds)
     speed, turning = paces(stream, rate_hz, thresholds)
@@ -226,9 +214,7 @@ def pace_at_rest(noise: Noise, rate_hz: float, thresholds: Thresholds) -> tuple[
     )
 
 
-def paces(
-    stream: Stream, rate_hz: float, thresholds: Thresholds
-) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
+def paces(stream: Stream, rate_hz: float, thresholds: Thresholds) -> tuple[Series, Series]:
     """Slopes of way [m/s] and of turning [rad/s] over the window of rest; NaN where lost."""
     half = _half_window(rate_hz, thresholds)
     speed, turning = np.full(len(stream.times), np.nan), np.full(len(stream.times), np.nan)
@@ -245,7 +231,7 @@ def _half_window(rate_hz: float, thresholds: Thresholds) -> int:
     return max(1, round(0.5 * thresholds.rest_window_s * rate_hz))
 
 
-def _pace(positions: Float[np.ndarray, "frames axes"], half: int) -> Float[np.ndarray, "frames"]:
+def _pace(positions: Float[np.ndarray, "frames axes"], half: int) -> Series:
     """Length of that slope, a frame."""
     return np.asarray(np.linalg.norm(slopes(positions, half), axis=1))
 

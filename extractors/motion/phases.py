@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
 from capar.model.capture import Stream
+from capar.model.geometry import Holds, Places, Series, Turns, Vector
 from extractors.bodies.bodies import BodyGeometry
 from extractors.bodies.poses import Poses, rotation_matrices
 from extractors.motion.object_motion import RestPose, slopes
@@ -41,11 +42,6 @@ def phases(
     clearly steep or clearly flat, and the change is placed where it passed 45 degrees, or, if the
     body hardly moves meanwhile, in the middle of that time. Phases that lead nowhere are part of
     their neighbours.
-
-    Args:
-        body: The body.
-        motions: When it moves, as closed intervals of frames, in time.
-        thresholds: Window of the fit, speeds of rest, angles and the least way of a phase.
     """
     stream = body.poses.smooth
     rate_hz = frame_rate(stream.times)
@@ -59,10 +55,7 @@ def phases(
 
 
 def turns_of_height(
-    found: tuple[Phase, ...],
-    middles: Float[np.ndarray, "frames 3"],
-    met: Collection[int],
-    thresholds: Thresholds,
+    found: tuple[Phase, ...], middles: Places, met: Collection[int], thresholds: Thresholds
 ) -> tuple[int, ...]:
     """Frames at which a body that rose steeply by a real way begins to sink by one.
 
@@ -72,11 +65,8 @@ def turns_of_height(
     comes to touch another in between, its way has ended there. A sink that such a frame begins ends
     at the next one, if the body then rises again.
 
-    Args:
-        found: Phases, in time; a motion's follow each other without a gap.
-        middles: Places of the body [m].
-        met: Frames at which it begins to touch another body that does not move it.
-        thresholds: The least way up or down.
+    ``found``: phases, in time; a motion's follow each other without a gap. ``middles``: places of
+    the body [m]. ``met``: frames at which it begins to touch another body that does not move it.
     """
     frames: list[int] = []
     before: Phase | None = None
@@ -102,9 +92,7 @@ def turns_of_height(
     return tuple(frames)
 
 
-def _turn(
-    rise: Phase, between: Sequence[Phase], sink: Phase, middles: Float[np.ndarray, "frames 3"]
-) -> list[int]:
+def _turn(rise: Phase, between: Sequence[Phase], sink: Phase, middles: Places) -> list[int]:
     level = [phase for phase in between if phase.kind == LEVEL]
     if level:
         longest = max(level, key=lambda phase: _way(phase, middles))
@@ -115,7 +103,7 @@ def _turn(
     return [(rise.last + sink.first) // 2]
 
 
-def _rise(phase: Phase, middles: Float[np.ndarray, "frames 3"]) -> float:
+def _rise(phase: Phase, middles: Places) -> float:
     return float(middles[phase.last, 2] - middles[phase.first, 2])
 
 
@@ -143,9 +131,7 @@ def _parts(body: BodyGeometry, span: slice, rate_hz: float, thresholds: Threshol
     ]
 
 
-def _headings(
-    way: Float[np.ndarray, "frames 3"], slow: Float[np.ndarray, "frames"], thresholds: Thresholds
-) -> Int[np.ndarray, "frames"]:
+def _headings(way: Places, slow: Series, thresholds: Thresholds) -> Int[np.ndarray, "frames"]:
     """Up, aside or down at each frame, with hysteresis; while it is slow, as the nearest does."""
     angle = np.arctan2(way[:, 2], np.hypot(way[:, 0], way[:, 1]))
     known = np.flatnonzero(~slow)
@@ -169,9 +155,7 @@ def _headings(
     return out
 
 
-def _joined(
-    parts: list[Phase], middles: Float[np.ndarray, "frames 3"], thresholds: Thresholds
-) -> list[Phase]:
+def _joined(parts: list[Phase], middles: Places, thresholds: Thresholds) -> list[Phase]:
     """The same without phases that lead nowhere: the shortest first, half to either neighbour."""
     out = list(parts)
     while len(out) > 1:
@@ -183,7 +167,7 @@ def _joined(
     return out
 
 
-def _way(phase: Phase, middles: Float[np.ndarray, "frames 3"]) -> float:
+def _way(phase: Phase, middles: Places) -> float:
     """How far a phase leads [m]; being still or turning is meant to lead nowhere."""
     if phase.kind in (TURNING, STILL):
         return float("inf")
@@ -212,10 +196,6 @@ def rolling(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:
     velocity v + w x r. Where the body rolls without slipping that point is at rest while the
     middle goes. Nothing here knows whether there is a support at that height; on a slope of more
     than about fifteen degrees the point of contact lies too far uphill for it to be this one.
-
-    Args:
-        body: The body; one without a shape has no lowest point and never rolls.
-        thresholds: Least speed and turn, largest slip, and least durations.
     """
     if body.poses.rests or body.shape is None:
         return ()
@@ -236,9 +216,7 @@ def rolling(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:
     )
 
 
-def angular_velocity(
-    orientations: Float[np.ndarray, "frames 4"], times: Float[np.ndarray, "frames"]
-) -> Float[np.ndarray, "frames 3"]:
+def angular_velocity(orientations: Turns, times: Series) -> Places:
     """Angular velocity in the world by central differences [rad/s]; NaN beside lost frames."""
     before = np.maximum(np.arange(len(times)) - 1, 0)
     after = np.minimum(np.arange(len(times)) + 1, len(times) - 1)
@@ -251,12 +229,7 @@ def angular_velocity(
     return np.asarray(out)
 
 
-def _holds(
-    goes: Float[np.ndarray, "frames 3"],
-    turns: Float[np.ndarray, "frames 3"],
-    arm: Float[np.ndarray, "frames 3"],
-    thresholds: Thresholds,
-) -> Bool[np.ndarray, "frames"]:
+def _holds(goes: Places, turns: Places, arm: Places, thresholds: Thresholds) -> Holds:
     """Whether the middle goes, the axis lies, and the point below the middle stays behind."""
     speed = np.linalg.norm(goes, axis=1)
     slip = np.linalg.norm(goes + np.cross(turns, arm), axis=1)
@@ -269,9 +242,7 @@ def _holds(
         )
 
 
-def _turned(
-    turns: Float[np.ndarray, "frames 3"], times: Float[np.ndarray, "frames"]
-) -> Float[np.ndarray, "frames"]:
+def _turned(turns: Places, times: Series) -> Series:
     """Angle turned so far [rad]; what is not known adds nothing."""
     rate = np.nan_to_num(np.linalg.norm(turns, axis=1))
     steps = 0.5 * (rate[1:] + rate[:-1]) * np.diff(times)
@@ -279,11 +250,7 @@ def _turned(
 
 
 def leaning(
-    poses: Poses,
-    upright: Float[np.ndarray, "3"],
-    thresholds: Thresholds,
-    *,
-    length_m: float = 0.0,
+    poses: Poses, upright: Vector, thresholds: Thresholds, *, length_m: float = 0.0
 ) -> tuple[Interval, ...]:
     """Closed intervals of frames in which an object leans, from when it began to lean over.
 
@@ -292,11 +259,8 @@ def leaning(
     rather than travels: its middle goes no farther meanwhile than its turning moves one end about
     the other.
 
-    Args:
-        poses: The object's poses.
-        upright: The axis that points up while it stands, in its own frame.
-        thresholds: The angle, and least durations.
-        length_m: The object's greatest length [m]; a point's turning moves nothing.
+    ``upright``: the axis that points up while it stands, in its own frame. ``length_m``: the
+    object's greatest length [m]; a point's turning moves nothing.
     """
     stream = poses.smooth
     angle = lean(stream.orientations, upright)
@@ -309,10 +273,7 @@ def leaning(
     lapse = round(thresholds.dropout_s * frame_rate(stream.times))
     found: list[Interval] = []
     for first, last in intervals(
-        far,
-        stream.times,
-        dropout_s=thresholds.dropout_s,
-        minimum_s=thresholds.contact_minimum_s,
+        far, stream.times, dropout_s=thresholds.dropout_s, minimum_s=thresholds.contact_minimum_s
     ):
         before, after = slice(first - 1, None, -1) if first else slice(0, 0), slice(last + 1, None)
         begin = first - _run(over[before] & _turns(speed[before], reach[before]), lapse)
@@ -323,15 +284,13 @@ def leaning(
     return tuple(found)
 
 
-def _turns(
-    speed: Float[np.ndarray, "frames"], reach: Float[np.ndarray, "frames"]
-) -> Bool[np.ndarray, "frames"]:
+def _turns(speed: Series, reach: Series) -> Holds:
     """Up to which frames it has come no farther than its turning takes it; not where it is lost."""
     with np.errstate(invalid="ignore"):
         return np.asarray(np.cumsum(speed) <= np.cumsum(reach))
 
 
-def _run(holds: Bool[np.ndarray, "frames"], lapse: int) -> int:
+def _run(holds: Holds, lapse: int) -> int:
     """For how many frames from the first on it holds, but for lapses of fewer frames than so many.
 
     Noise makes such lapses in what is told by a rate of change.
@@ -342,7 +301,7 @@ def _run(holds: Bool[np.ndarray, "frames"], lapse: int) -> int:
     return int(known[-1]) + 1 if known.size else 0
 
 
-def upright_axis(poses: Poses, rest: RestPose | None) -> Float[np.ndarray, "3"]:
+def upright_axis(poses: Poses, rest: RestPose | None) -> Vector:
     """The axis that points up where a body first rests, or else in its first known frame."""
     known = np.flatnonzero(~poses.smooth.lost)
     up = np.array([0.0, 0.0, 1.0])
@@ -355,15 +314,13 @@ def upright_axis(poses: Poses, rest: RestPose | None) -> Float[np.ndarray, "3"]:
     return np.asarray(rotation_matrices(turn[None])[0].T @ up)
 
 
-def lean(
-    orientations: Float[np.ndarray, "frames 4"], upright: Float[np.ndarray, "3"]
-) -> Float[np.ndarray, "frames"]:
+def lean(orientations: Turns, upright: Vector) -> Series:
     """Angle of an axis of the body from the vertical at each frame [rad]."""
     up = (rotation_matrices(orientations) @ upright)[:, 2]
     return np.arccos(np.clip(up, -1.0, 1.0))
 
 
-def spin_steps(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "steps"]:
+def spin_steps(orientations: Turns) -> Float[np.ndarray, "steps"]:
     """Angle by which a body turns about the vertical from each frame to the next [rad].
 
     It is the twist of the step's rotation; lost frames add nothing.
@@ -388,10 +345,7 @@ def lengthwise(
 ) -> tuple[Interval, ...]:
     """Those of the stretches in which a body goes along its own length rather than across.
 
-    Args:
-        body: The body; one that is not long and thin, or has no shape, goes along nothing.
-        swinging: Closed intervals of frames in which it moves to and fro.
-        thresholds: How long is long, and which share of its path is along.
+    ``swinging``: closed intervals of frames in which it moves to and fro.
     """
     axis = long_axis(body, thresholds)
     if axis is None:
@@ -400,7 +354,7 @@ def lengthwise(
     return tuple(span for span in swinging if _share_along(body, axis, span) >= least)
 
 
-def long_axis(body: BodyGeometry, thresholds: Thresholds) -> Float[np.ndarray, "3"] | None:
+def long_axis(body: BodyGeometry, thresholds: Thresholds) -> Vector | None:
     """The unit axis of a long, thin body in its own frame; None for any other body.
 
     The axis is the principal one of its outermost points; its length along the axis is so many
@@ -416,7 +370,7 @@ def long_axis(body: BodyGeometry, thresholds: Thresholds) -> Float[np.ndarray, "
     return axes[0] if np.ptp(along) >= thresholds.slender_ratio * wide else None
 
 
-def _share_along(body: BodyGeometry, axis: Float[np.ndarray, "3"], span: Interval) -> float:
+def _share_along(body: BodyGeometry, axis: Vector, span: Interval) -> float:
     """Which share of its origin's path is along its own axis [1]; lost frames count nothing."""
     part = slice(span[0], span[1] + 1)
     steps = np.diff(body.poses.smooth.positions[part], axis=0)
@@ -426,12 +380,11 @@ def _share_along(body: BodyGeometry, axis: Float[np.ndarray, "3"], span: Interva
     return float(along / way) if way > 0.0 else 0.0
 
 
-def turning_points(values: Float[np.ndarray, "frames"], least: float) -> Int[np.ndarray, "turns"]:
+def turning_points(values: Series, least: float) -> Int[np.ndarray, "turns"]:
     """Frames of extrema that lie at least so far from the extremum before and the one after.
 
-    Args:
-        values: A coordinate over time, known throughout.
-        least: The least way between neighbouring extrema, in the coordinate's unit.
+    ``values``: A coordinate over time, known throughout. ``least``: the least way between
+    neighbouring extrema, in the coordinate's unit.
     """
     found: list[int] = []
     low = high = direction = 0
@@ -450,16 +403,11 @@ def turning_points(values: Float[np.ndarray, "frames"], least: float) -> Int[np.
 
 
 def level_turns(
-    middles: Float[np.ndarray, "frames 3"],
-    motions: Iterable[Interval],
-    thresholds: Thresholds,
+    middles: Places, motions: Iterable[Interval], thresholds: Thresholds
 ) -> tuple[int, ...]:
     """Frames at which a body turns back on the level, after a real way and before another one.
 
-    Args:
-        middles: The middles of the body [m]; a motion in which it is lost is left out.
-        motions: When it moves, as closed intervals of frames.
-        thresholds: The least way, and what is level.
+    ``middles``: the middles of the body [m]; a motion in which it is lost is left out.
     """
     found: list[int] = []
     for first, last in motions:
@@ -508,10 +456,7 @@ def most_turns(
 ) -> tuple[int, Int[np.ndarray, "turns"]]:
     """The axis of the world along which a body turns back most between two frames, and where.
 
-    Args:
-        stream: The body's poses; where it is lost it is taken to go straight on.
-        span: First and last frame.
-        thresholds: The least way between turning points.
+    ``span``: first and last frame.
 
     Returns:
         The number of the axis, and the frames of its turning points.
@@ -536,7 +481,7 @@ def _known(stream: Stream, moving: tuple[Interval, ...]) -> Iterator[Interval]:
 
 
 def _chains(
-    turns: Int[np.ndarray, "turns"], times: Float[np.ndarray, "frames"], thresholds: Thresholds
+    turns: Int[np.ndarray, "turns"], times: Series, thresholds: Thresholds
 ) -> list[Int[np.ndarray, "turns"]]:
     if not len(turns):
         return []

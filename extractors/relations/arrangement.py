@@ -11,6 +11,7 @@ from capar.model import geometry
 from capar.model.calibration import Calibration, Found
 from capar.model.capture import Capture, Stream, TagType
 from capar.model.facts import MovesWith, Travels
+from capar.model.geometry import Places, Series
 from extractors.bodies.bodies import Bodies, BodyGeometry
 from extractors.contact.proximity import distance
 from extractors.contact.touch_distances import (
@@ -49,12 +50,12 @@ class Pair:
     thresholds: Thresholds
 
     @cached_property
-    def gap(self) -> Float[np.ndarray, "frames"]:
+    def gap(self) -> Series:
         """Distance of their boxes along the world's axes [m]; zero where they overlap."""
         return gap(self.body, self.other)
 
     @cached_property
-    def aside(self) -> Float[np.ndarray, "frames"]:
+    def aside(self) -> Series:
         """How far the body's middle is outside the shadow of the other's box [m]."""
         return beyond_shadow(self.body.middles, *self.other.boxes)
 
@@ -72,7 +73,7 @@ class Pair:
         return self.thresholds.tolerance_most_m
 
     @cached_property
-    def shares(self) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
+    def shares(self) -> tuple[Series, Series]:
         """Shares of the body's points in the other's convex hull, and of those well inside.
 
         The points are its outermost ones, those halfway to its middle, and its middle. Well inside
@@ -199,7 +200,7 @@ def between(body: BodyGeometry, one: BodyGeometry, other: BodyGeometry) -> Holds
     return out
 
 
-def gap(body: BodyGeometry, other: BodyGeometry) -> Float[np.ndarray, "frames"]:
+def gap(body: BodyGeometry, other: BodyGeometry) -> Series:
     """Distance of the boxes of two bodies along the world's axes [m]; zero where they overlap."""
     return boxes_apart(body, other, slice(None))
 
@@ -245,11 +246,7 @@ ARRANGEMENTS: dict[str, Callable[[Pair], Holds]] = {
 """Every arrangement of two bodies by its name in facts."""
 
 
-def beyond_shadow(
-    point: Float[np.ndarray, "frames 3"],
-    low: Float[np.ndarray, "frames 3"],
-    high: Float[np.ndarray, "frames 3"],
-) -> Float[np.ndarray, "frames"]:
+def beyond_shadow(point: Places, low: Places, high: Places) -> Series:
     """How far a point is outside a box's shadow on the ground [m]."""
     outside = np.maximum(np.maximum(low - point, point - high), 0.0)
     return np.asarray(np.linalg.norm(outside[:, :2], axis=1))
@@ -260,7 +257,7 @@ def _radius(body: BodyGeometry) -> float:
 
 
 def _holds(
-    box: BodyGeometry, points: Float[np.ndarray, "frames 3"], frames: Int[np.ndarray, "some"]
+    box: BodyGeometry, points: Places, frames: Int[np.ndarray, "some"]
 ) -> Bool[np.ndarray, "some"]:
     low, high = (ends[frames] for ends in box.boxes)
     some = points[frames]
@@ -371,7 +368,7 @@ def _gap(
         one, two = pair.first_point, pair.second_point
         points = TouchPoints(one, two) if first == other.name else TouchPoints(two, one)
         break
-    apart: Float[np.ndarray, "frames"]
+    apart: Series
     if pivots:
         apart = points.apart(other.poses.settled, thing.poses.settled)[some]
     else:
@@ -405,11 +402,7 @@ def shifts(
     where it is slowest in that frame, while hand and object may move together. Another place is
     farther from the first pause at the old one than a hand is wide.
 
-    Args:
-        hand: The end-effector.
-        thing: The object that it touches.
-        touching: Frames through which it does.
-        thresholds: Width of a hand, and what makes a pause.
+    ``touching``: frames through which it does.
     """
     first, last = touching
     if last - first + 1 < FEWEST_FRAMES:

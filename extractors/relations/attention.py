@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from capar.model.capture import Capture, Sensor
+from capar.model.geometry import Places, Series
 from extractors.bodies.bodies import TRUNK, Bodies
 from extractors.bodies.poses import Poses, rotation_matrices
 from extractors.contact.surfaces import Surface, surface
@@ -66,7 +67,7 @@ class Attention:
     seen: Int[np.ndarray, "frames"]
     """Index of the object met first at each frame, or ``NOTHING``."""
 
-    points: Float[np.ndarray, "frames 3"]
+    points: Places
     """Where it is met, in the world [m]; NaN where nothing is."""
 
     looks: tuple[tuple[str, Interval], ...]
@@ -74,21 +75,14 @@ class Attention:
 
 
 def attention(
-    capture: Capture,
-    sensor: Sensor,
-    bodies: Bodies,
-    thresholds: Thresholds,
+    capture: Capture, sensor: Sensor, bodies: Bodies, thresholds: Thresholds
 ) -> Attention:
     """The line of sight of an attending sensor, against boxes first and then surfaces.
 
     A head looks with its agent's eyes at every frame at which an eye tracker sees them.
 
-    Args:
-        capture: The trial, whose tag objects with a shape can be seen.
-        sensor: The sensor, with the eye [m] and the gaze in its own frame. It does not see the
-            object of its own name, in which its eye may lie.
-        bodies: Its bodies.
-        thresholds: Least durations of a look and of its interruptions.
+    ``sensor``: the sensor, with the eye [m] and the gaze in its own frame. It does not see the
+    object of its own name, in which its eye may lie.
     """
     origins, rays = sight(sensor, bodies.sensors[sensor.name].poses)
     for eyes in _eyes_of(capture, sensor):
@@ -119,22 +113,14 @@ def attention(
 
 
 def _looks(
-    seen: Int[np.ndarray, "frames"],
-    index: int,
-    times: Float[np.ndarray, "frames"],
-    thresholds: Thresholds,
+    seen: Int[np.ndarray, "frames"], index: int, times: Series, thresholds: Thresholds
 ) -> list[Interval]:
     return intervals(
-        seen == index,
-        times,
-        dropout_s=thresholds.dropout_s,
-        minimum_s=thresholds.contact_minimum_s,
+        seen == index, times, dropout_s=thresholds.dropout_s, minimum_s=thresholds.contact_minimum_s
     )
 
 
-def sight(
-    sensor: Sensor, poses: Poses
-) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 3"]]:
+def sight(sensor: Sensor, poses: Poses) -> tuple[Places, Places]:
     """The eye's place [m] and the direction of sight [1] at each frame, in the world."""
     turns = rotation_matrices(poses.settled.orientations)
     gaze = np.asarray(sensor.gaze, float)
@@ -142,13 +128,7 @@ def sight(
     return poses.settled.positions + turns @ np.asarray(sensor.eye, float), rays
 
 
-def _distances(
-    seen: Surface,
-    poses: Poses,
-    origins: Float[np.ndarray, "frames 3"],
-    rays: Float[np.ndarray, "frames 3"],
-    limit: Float[np.ndarray, "frames"],
-) -> Float[np.ndarray, "frames"]:
+def _distances(seen: Surface, poses: Poses, origins: Places, rays: Places, limit: Series) -> Series:
     """How far along each ray it meets a surface [m]; infinite where it does not, or not sooner."""
     out = np.full(len(origins), np.inf)
     offset = seen.centre

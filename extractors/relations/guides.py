@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float
 from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
+from capar.model.geometry import Holds, Quaternion, Series, Vector
 from capar.model.locations import GuideLocation, Nlt, local_point, normalised, relative_orientation
 from extractors.bodies.bodies import BodyGeometry
 from extractors.contact.surfaces import surface
@@ -29,8 +30,8 @@ ROUNDED = 1e-9
 _INVERSE = np.array([1.0, -1.0, -1.0, -1.0])
 """What a unit quaternion's parts are multiplied with to make it the opposite rotation's [1]."""
 
-_Vector: TypeAlias = Float[np.ndarray, "3"]
-_Frames: TypeAlias = Float[np.ndarray, "frames"]
+_Vector: TypeAlias = Vector
+_Frames: TypeAlias = Series
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +144,7 @@ def fit_rail(body: BodyGeometry) -> GuideFit | None:
 
 def _known(
     body: BodyGeometry,
-) -> tuple[Bool[np.ndarray, "frames"], Float[np.ndarray, "known 3"], Float[np.ndarray, "known 4"]]:
+) -> tuple[Holds, Float[np.ndarray, "known 3"], Float[np.ndarray, "known 4"]]:
     known = ~(np.isnan(body.middles).any(axis=1) | np.isnan(body.orientations).any(axis=1))
     return known, body.middles[known], body.orientations[known]
 
@@ -190,7 +191,7 @@ def _across(axis: _Vector) -> Float[np.ndarray, "2 3"]:
     return np.stack([one, np.cross(axis, one)])
 
 
-def _spread(known: Bool[np.ndarray, "frames"], values: Float[np.ndarray, "known"]) -> _Frames:
+def _spread(known: Holds, values: Float[np.ndarray, "known"]) -> _Frames:
     out = np.full(len(known), np.nan)
     out[known] = values
     return out
@@ -218,20 +219,11 @@ def inside_share(body: BodyGeometry, base: BodyGeometry, frame: int) -> float:
 
 
 def flush_share(
-    body: BodyGeometry,
-    base: BodyGeometry,
-    frame: int,
-    way: Float[np.ndarray, "3"],
-    thresholds: Thresholds,
+    body: BodyGeometry, base: BodyGeometry, frame: int, way: Vector, thresholds: Thresholds
 ) -> float:
     """Share of a body that is flush against another's convex hull, seen along a direction [1].
 
-    Args:
-        body: The body.
-        base: The other one, which stands fixed.
-        frame: The frame.
-        way: Unit direction in the world in which the body closes.
-        thresholds: How near is flush.
+    ``way``: unit direction in the world in which the body closes.
     """
     points = _points(body, frame)
     _, front = _through(points, way, body, frame)
@@ -241,11 +233,7 @@ def flush_share(
 
 
 def covers_a_hollow(
-    body: BodyGeometry,
-    base: BodyGeometry,
-    frame: int,
-    way: Float[np.ndarray, "3"],
-    thresholds: Thresholds,
+    body: BodyGeometry, base: BodyGeometry, frame: int, way: Vector, thresholds: Thresholds
 ) -> bool:
     """Whether behind most of a body, along a direction, the other's true surface is not flush."""
     points = _points(body, frame)
@@ -274,9 +262,7 @@ def borne_from_below(
     return False
 
 
-def edge_gap(
-    body: BodyGeometry, base: BodyGeometry, frame: int, way: Float[np.ndarray, "3"]
-) -> float:
+def edge_gap(body: BodyGeometry, base: BodyGeometry, frame: int, way: Vector) -> float:
     """How far a body's outermost point along a direction is from that of another [m]."""
     one, two = (
         float(((each.corners @ each.turn(frame).T + each.middles[frame]) @ way).max())
@@ -315,7 +301,7 @@ def hinge_at_edge_of(
     base: BodyGeometry,
     fit: GuideFit,
     frame: int,
-    way: Float[np.ndarray, "3"],
+    way: Vector,
     thresholds: Thresholds,
 ) -> bool:
     """Whether a body's hinge is at the edge of another's hull, as seen along a direction."""
@@ -327,11 +313,7 @@ def hinge_at_edge_of(
 
 
 def confined(
-    body: BodyGeometry,
-    base: BodyGeometry,
-    axis: Float[np.ndarray, "3"],
-    frame: int,
-    thresholds: Thresholds,
+    body: BodyGeometry, base: BodyGeometry, axis: Vector, frame: int, thresholds: Thresholds
 ) -> bool:
     """Whether another's surface stands close by on both sides of a body, or fills its place.
 
@@ -349,11 +331,7 @@ def confined(
 
 
 def _kept(
-    body: BodyGeometry,
-    base: BodyGeometry,
-    side: Float[np.ndarray, "3"],
-    frame: int,
-    thresholds: Thresholds,
+    body: BodyGeometry, base: BodyGeometry, side: Vector, frame: int, thresholds: Thresholds
 ) -> bool:
     side = side / np.linalg.norm(side)
     points = _points(body, frame)
@@ -406,10 +384,7 @@ def _outside(
 
 
 def _through(
-    points: Float[np.ndarray, "points 3"],
-    way: Float[np.ndarray, "3"],
-    body: BodyGeometry,
-    frame: int,
+    points: Float[np.ndarray, "points 3"], way: Vector, body: BodyGeometry, frame: int
 ) -> tuple[Float[np.ndarray, "points"], Float[np.ndarray, "points"]]:
     """Where lines from points along a direction enter and leave a body's hull [m].
 
@@ -428,10 +403,7 @@ def _through(
 
 
 def _surface_ahead(
-    points: Float[np.ndarray, "points 3"],
-    way: Float[np.ndarray, "3"],
-    base: BodyGeometry,
-    frame: int,
+    points: Float[np.ndarray, "points 3"], way: Vector, base: BodyGeometry, frame: int
 ) -> Float[np.ndarray, "points"]:
     """How far ahead of each point a body's true surface is [m]; infinite where there is none."""
     out = np.full(len(points), np.inf)
@@ -465,13 +437,7 @@ def ends_before_opening(
 ) -> Ends | None:
     """Where a body that keeps to a rail closes an opening; None if it is no sliding door.
 
-    Args:
-        body: The body.
-        base: What may have the opening.
-        fixed: All that stands fixed: what the body could lie on.
-        fit: The rail.
-        still_m: How much nearer to the edge is nearer [m].
-        thresholds: What is level, flush, and closed.
+    ``still_m``: how much nearer to the edge is nearer [m].
     """
     side = np.cross(fit.axis, [0.0, 0.0, 1.0])
     length = float(np.linalg.norm(side))
@@ -495,7 +461,7 @@ def _closed_end(
     base: BodyGeometry,
     fit: GuideFit,
     frames: tuple[int, int],
-    way: Float[np.ndarray, "3"],
+    way: Vector,
     still_m: float,
     thresholds: Thresholds,
 ) -> Ends | None:
@@ -539,13 +505,13 @@ class Guide:
     """What is no farther than this from an end of its range is there [rad] or [m]."""
 
     @property
-    def way_m(self) -> Float[np.ndarray, "frames"]:
+    def way_m(self) -> Series:
         """How far the body's middle is from its closed place along its path [m]."""
         fit = self.fit
         return self.opening * (fit.radius_m if fit.kind == HINGE else 1.0)
 
     @property
-    def opening(self) -> Float[np.ndarray, "frames"]:
+    def opening(self) -> Series:
         """How far the body is open at each frame [rad] or [m]; NaN where it was lost."""
         course = self.fit.course
         with np.errstate(invalid="ignore"):
@@ -556,14 +522,7 @@ class Guide:
 def guide_of(
     body: BodyGeometry, fixed: Iterable[BodyGeometry], floor: Floor, thresholds: Thresholds
 ) -> Guide | None:
-    """The hinge or the rail on which a body moves throughout; None where there is none.
-
-    Args:
-        body: The body, with a shape.
-        fixed: Bodies that stand fixed; of several that fit, the one in which it lies most.
-        floor: Displacement below which the body is still at a place.
-        thresholds: What the criteria decide by.
-    """
+    """The hinge or the rail on which a body moves throughout; None where there is none."""
     if body.shape is None or body.poses.rests:
         return None
     fit = _fit(body, floor, thresholds)
@@ -677,11 +636,6 @@ def turns_on_guide(
 
     It lies in the middle of the frames in which the body is within the floor of motion of the
     place farthest along.
-
-    Args:
-        guide: The guide.
-        motions: When the body moves, in time.
-        thresholds: The least way, and the floor of motion.
     """
     found: list[int] = []
     for first, last in motions:
@@ -708,7 +662,7 @@ def _extrema(way: Float[np.ndarray, "known"], least: float) -> list[int]:
     return found
 
 
-def _middle(way: Float[np.ndarray, "frames"], at: int, thresholds: Thresholds) -> int:
+def _middle(way: Series, at: int, thresholds: Thresholds) -> int:
     """The middle of the stretch about a frame in which the course is as far as there."""
     with np.errstate(invalid="ignore"):
         there = np.abs(way - way[at]) <= thresholds.motion_floor_m
@@ -727,11 +681,6 @@ def guide_location(body: BodyGeometry, base: BodyGeometry, guide: Guide) -> Guid
 
     The place on a hinge is the one beside the middle of the body; on a rail it is that middle,
     where the body is closed.
-
-    Args:
-        body: The body that moves.
-        base: The fixed one.
-        guide: The hinge or rail.
     """
     fit, frame = guide.fit, guide.closed
     opens = 1.0 if fit.course[guide.opened] > fit.course[frame] else -1.0
@@ -748,7 +697,7 @@ def guide_location(body: BodyGeometry, base: BodyGeometry, guide: Guide) -> Guid
     )
 
 
-def _turn_to(axis: Float[np.ndarray, "3"]) -> Rotation:
+def _turn_to(axis: Vector) -> Rotation:
     """The shortest turn that takes the constraint's axis to one of the world; half about z."""
     about = np.cross(X_AXIS, axis)
     sine, cosine = float(np.linalg.norm(about)), float(axis @ X_AXIS)
@@ -756,9 +705,7 @@ def _turn_to(axis: Float[np.ndarray, "3"]) -> Rotation:
     return Rotation.from_rotvec(np.arctan2(sine, cosine) * unit)
 
 
-def _nlt(
-    body: BodyGeometry, frame: int, point: Float[np.ndarray, "3"], turn: Float[np.ndarray, "4"]
-) -> Nlt:
+def _nlt(body: BodyGeometry, frame: int, point: Vector, turn: Quaternion) -> Nlt:
     stream = body.poses.settled if body.poses.rests else body.poses.smooth
     size = np.zeros(3) if body.shape is None else body.shape.size
     local = local_point(stream.positions[frame], stream.orientations[frame], point)

@@ -28,6 +28,7 @@ from capar.model.facts import (
     Travelled,
     TrunkPlace,
 )
+from capar.model.geometry import Series, Vector
 from extractors.bodies.bodies import BodyGeometry, from_trunk, once
 from extractors.motion.phases import lean, spin_steps
 from extractors.relations.arrangement import beyond_shadow
@@ -59,9 +60,7 @@ class Sums:
 FROM_THE_BEGINNING = Sums()
 
 
-def summed(
-    steps: Float[np.ndarray, "steps"], anchor: int, known: float
-) -> Float[np.ndarray, "frames"]:
+def summed(steps: Float[np.ndarray, "steps"], anchor: int, known: float) -> Series:
     """Running sum of the steps between frames that is ``known`` at a frame, before it backwards.
 
     From that frame on they are added in the order in which a whole recording would add them, so
@@ -82,18 +81,12 @@ eight metres, and an integer of its own would take 32 bytes for each."""
 
 
 def places(
-    body: BodyGeometry,
-    upright: Float[np.ndarray, "3"],
-    frames: tuple[int, ...],
-    since: Sums = FROM_THE_BEGINNING,
+    body: BodyGeometry, upright: Vector, frames: tuple[int, ...], since: Sums = FROM_THE_BEGINNING
 ) -> Iterator[Fact]:
     """Place, way, turn and posture of a body at some frames; lost frames are left out.
 
-    Args:
-        body: The body.
-        upright: The axis that points up while it stands, in its own frame.
-        frames: Frames, ascending.
-        since: How far it had gone and turned before.
+    ``upright``: the axis that points up while it stands, in its own frame. ``since``: how far it
+    had gone and turned before.
     """
     if not frames:
         return
@@ -111,18 +104,12 @@ def places(
 
 
 def trunk_places(
-    body: BodyGeometry,
-    trunk: BodyGeometry,
-    upright: Float[np.ndarray, "3"],
-    frames: tuple[int, ...],
+    body: BodyGeometry, trunk: BodyGeometry, upright: Vector, frames: tuple[int, ...]
 ) -> Iterator[Fact]:
     """Place of an end-effector from its agent's trunk at some frames; lost ones are left out.
 
-    Args:
-        body: The end-effector.
-        trunk: The trunk.
-        upright: The trunk's axis that points up while it stands, in its own frame.
-        frames: Frames, ascending.
+    ``trunk``: the trunk. ``upright``: the trunk's axis that points up while it stands, in its own
+    frame.
     """
     if not frames:
         return
@@ -143,12 +130,8 @@ def distances(
 ) -> Iterator[Fact]:
     """Distance of two bodies' middles, and the angle by which one has gone about the other.
 
-    Args:
-        body: The body.
-        other: The other one.
-        frames: Frames, ascending; those at which either is lost are left out.
-        since: By how much it had gone about the other before.
-        whole: Whether this is a whole recording: angles that stay small in it are left out.
+    ``since``: by how much it had gone about the other before. ``whole``: whether this is a whole
+    recording: angles that stay small in it are left out.
     """
     if not frames:
         return
@@ -168,11 +151,7 @@ def distances(
 
 
 def without_small_sweeps(facts: Iterable[SweptAzimuth]) -> list[SweptAzimuth]:
-    """Angles of a whole recording without those of bodies that go about each other nowhere.
-
-    Args:
-        facts: The angles of every two bodies, in any order, which is kept.
-    """
+    """Angles of a whole recording without those of bodies that go about each other nowhere."""
     known = list(facts)
     angles: dict[tuple[str, str], list[int]] = defaultdict(list)
     for fact in known:
@@ -188,7 +167,7 @@ def _sweeps(milliradians: Sequence[int]) -> bool:
 
 def turned_and_gone(
     body: BodyGeometry, since: Sums = FROM_THE_BEGINNING
-) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
+) -> tuple[Series, Series, Series]:
     """Path [m], rotation [rad] and turn about the vertical [rad] up to each frame."""
     steps = np.linalg.norm(np.diff(body.middles, axis=0), axis=1)
     angles = geometry.angle_between(body.orientations[1:], body.orientations[:-1])
@@ -200,9 +179,7 @@ def turned_and_gone(
     return way, turn, spin
 
 
-def wound(
-    body: BodyGeometry, other: BodyGeometry, since: Sums = FROM_THE_BEGINNING
-) -> Float[np.ndarray, "frames"]:
+def wound(body: BodyGeometry, other: BodyGeometry, since: Sums = FROM_THE_BEGINNING) -> Series:
     """Unwrapped azimuth of a body about another [rad].
 
     Nothing is added where it is lost, nor above or below the other, where it goes about nothing.
@@ -221,11 +198,7 @@ def sums_at(
 ) -> Sums:
     """What is summed up to a later frame of a window, which becomes the anchor.
 
-    Args:
-        bodies: Whose ways count.
-        others: What they may go about.
-        frame: The frame.
-        since: What is known.
+    ``others``: what they may go about. ``since``: what is known.
     """
     own, about = list(bodies), list(others)
     ways, winds = {}, {}
@@ -259,7 +232,7 @@ VESSELS = frozenset(
 )
 """Kinds of what is hollow, also where its shape is modelled without its hollow, or closed."""
 
-_Pocket = tuple[Float[np.ndarray, "3"], float]
+_Pocket = tuple[Vector, float]
 """A point in a body's largest hollow, in the body's own frame [m], and how large that is [m]."""
 
 _POCKETS: WeakKeyDictionary[Shape, _Pocket | None] = WeakKeyDictionary()
@@ -276,13 +249,7 @@ def rooms(
 ) -> Iterator[Fact]:
     """Where nothing fits in, and where that is not known.
 
-    Args:
-        things: Bodies of all tag objects, by their names.
-        kinds: What each is, where that is declared.
-        touches: What touches what.
-        known: Facts that say what moves to and fro and what is tipped; that, and what the first
-            touches, is asked about.
-        thresholds: How deep a hollow holds something.
+    ``kinds``: what each is, where that is declared.
     """
     facts = tuple(known)
     swung = {each.body for each in facts if isinstance(each, Swings)}
@@ -355,7 +322,7 @@ def _pocket(shape: Shape) -> _Pocket | None:
     return inside, float(ways[at])
 
 
-def enclosure(shape: Shape, point: Float[np.ndarray, "3"]) -> float:
+def enclosure(shape: Shape, point: Vector) -> float:
     """In what share of all directions a body's surface is seen from a point [1].
 
     Rays meet triangles as Moeller and Trumbore (1997) tell.

@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
-from jaxtyping import Bool, Float
 
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Sensor
 from capar.model.facts import Bears, Displaced, Fact, Seated, Touching
+from capar.model.geometry import Holds, Places, Series
 from extractors.bodies.bodies import Bodies, BodyGeometry, trunk_sensor
 from extractors.contact.contacts import FOOT
 from extractors.contact.normals import contact_normal
@@ -39,13 +39,6 @@ def bearing(
     middle is too far off its feet for them alone; pushing off and landing, whose forces exceed the
     weight; and anything of an agent of whom not exactly two feet are tracked, or, while both are
     down, no trunk.
-
-    Args:
-        capture: The trial.
-        bodies: Its bodies.
-        touches: Contacts, as facts.
-        calibration: The level on which feet stand.
-        thresholds: Shares and distances that the measurement decides by.
     """
     known = list(touches)
     for agent in capture.agents:
@@ -61,7 +54,7 @@ def _loads(
     capture: Capture,
     bodies: Bodies,
     feet: Sequence[Sensor],
-    middle: Float[np.ndarray, "frames 3"] | None,
+    middle: Places | None,
     touches: Sequence[Touching],
     level_m: float,
     thresholds: Thresholds,
@@ -79,22 +72,17 @@ def _loads(
 
 
 def share_of_first(
-    first: Float[np.ndarray, "frames 3"],
-    second: Float[np.ndarray, "frames 3"],
-    first_down: Bool[np.ndarray, "frames"],
-    second_down: Bool[np.ndarray, "frames"],
-    middle: Float[np.ndarray, "frames 3"] | None,
+    first: Places,
+    second: Places,
+    first_down: Holds,
+    second_down: Holds,
+    middle: Places | None,
     thresholds: Thresholds,
-) -> Float[np.ndarray, "frames"]:
+) -> Series:
     """Share of the weight that the first of two feet bears [1]; NaN where it cannot be known.
 
-    Args:
-        first: The middle of that foot [m].
-        second: The middle of the other one [m].
-        first_down: Whether that foot is down.
-        second_down: Whether the other one is.
-        middle: A place near the middle of the body [m]; None where none is tracked.
-        thresholds: How far the feet must be apart, and how far off the middle may be.
+    ``first_down``: whether that foot is down. ``second_down``: whether the other one is.
+    ``middle``: A place near the middle of the body [m]; None where none is tracked.
     """
     out = np.where(first_down, 1.0, np.where(second_down, 0.0, np.nan))
     line = (second - first)[:, :2]
@@ -115,9 +103,7 @@ def share_of_first(
     return np.asarray(out)
 
 
-def _shares(
-    share: Float[np.ndarray, "frames"], down: Bool[np.ndarray, "frames"], thresholds: Thresholds
-) -> dict[str, Bool[np.ndarray, "frames"]]:
+def _shares(share: Series, down: Holds, thresholds: Thresholds) -> dict[str, Holds]:
     """By word, the frames in which a foot that is down bears so much."""
     with np.errstate(invalid="ignore"):
         whole = down & (share >= 1.0 - thresholds.touch_load_share)
@@ -125,15 +111,13 @@ def _shares(
         return {WHOLE: whole, PART: down & ~np.isnan(share) & ~whole & ~none, NONE: none}
 
 
-def _spans(
-    holds: Bool[np.ndarray, "frames"], times: Float[np.ndarray, "frames"], thresholds: Thresholds
-) -> Sequence[Interval]:
+def _spans(holds: Holds, times: Series, thresholds: Thresholds) -> Sequence[Interval]:
     return intervals(
         holds, times, dropout_s=thresholds.dropout_s, minimum_s=thresholds.rest_minimum_s
     )
 
 
-def _middle(sensors: Iterable[Sensor], bodies: Bodies) -> Float[np.ndarray, "frames 3"] | None:
+def _middle(sensors: Iterable[Sensor], bodies: Bodies) -> Places | None:
     """Where the trunk's sensor nearest to the body's middle is, if there is one."""
     trunk = trunk_sensor(sensors)
     return None if trunk is None else bodies.sensors[trunk.name].poses.smooth.positions
@@ -145,7 +129,7 @@ def _down(
     touches: Sequence[Touching],
     level_m: float,
     thresholds: Thresholds,
-) -> list[Bool[np.ndarray, "frames"]]:
+) -> list[Holds]:
     """Frames in which each foot is down."""
     out, resting_low = [], []
     for foot in feet:
@@ -174,7 +158,7 @@ def foot_level(feet: Sequence[BodyGeometry], thresholds: Thresholds) -> float | 
     return float(known.min()) if known.size else None
 
 
-def _heights_at_rest(foot: BodyGeometry, thresholds: Thresholds) -> Float[np.ndarray, "frames"]:
+def _heights_at_rest(foot: BodyGeometry, thresholds: Thresholds) -> Series:
     """Height of a foot's lowest point while it rests [m]; NaN while it does not."""
     low = foot.boxes[0][:, 2]
     return np.where(mask(list(resting(foot.poses, thresholds)), len(low)), low, np.nan)
@@ -203,12 +187,8 @@ def rides(
     place on the bearer, in comparison with the bearer's own way, or in the bearer: a ball may
     roll about in a box.
 
-    Args:
-        load: The body.
-        bearer: What may bear it.
-        touching: Their contact, as a closed interval of frames.
-        motions: When the bearer moves.
-        thresholds: What is steep, and how far a load may shift.
+    ``load``: the body. ``bearer``: what may bear it. ``touching``: their contact, as a closed
+    interval of frames.
     """
     for begin, end in motions:
         first, last = max(begin, touching[0]), min(end, touching[1])
@@ -276,12 +256,7 @@ def seated(
     On what has no surface of its own nothing is seen to come down: there a contact is its distance.
     A palm that faces up bears a thing as a table does.
 
-    Args:
-        things: Objects by name.
-        hands: Acting end-effectors by name.
-        touches: Contacts of either with objects.
-        known: When things move, among other facts.
-        thresholds: What is steep, and what a hair is.
+    ``hands``: acting end-effectors by name.
     """
     moves = [fact for fact in known if isinstance(fact, Displaced)]
     for touch in touches:

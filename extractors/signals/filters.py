@@ -5,11 +5,12 @@ from functools import lru_cache
 from math import ceil
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 from scipy.ndimage import correlate1d
 
 from capar.model import geometry
 from capar.model.capture import Stream
+from capar.model.geometry import Holds, Places, Series, Turns
 from extractors.signals.intervals import frame_rate, time_step
 from extractors.thresholds import Thresholds
 
@@ -62,16 +63,11 @@ def kernel(step_s: float, thresholds: Thresholds) -> Float[np.ndarray, "taps"]:
 
 
 def lowpass(
-    values: Float[np.ndarray, "frames axes"],
-    times: Float[np.ndarray, "frames"],
-    thresholds: Thresholds,
+    values: Float[np.ndarray, "frames axes"], times: Series, thresholds: Thresholds
 ) -> Float[np.ndarray, "frames axes"]:
     """The values without what is faster than the cutoff; each known stretch by itself, NaN stays.
 
-    Args:
-        values: Any quantity over time; NaN in all axes where it is unknown.
-        times: Clock [s]; if its steps are uneven, values are filtered on an even clock.
-        thresholds: The cutoff [Hz].
+    ``values``: any quantity over time; NaN in all axes where it is unknown.
     """
     step = time_step(times)
     weights = kernel(step, thresholds)
@@ -82,11 +78,7 @@ def lowpass(
     return out
 
 
-def lowpass_orientations(
-    orientations: Float[np.ndarray, "frames 4"],
-    times: Float[np.ndarray, "frames"],
-    thresholds: Thresholds,
-) -> Float[np.ndarray, "frames 4"]:
+def lowpass_orientations(orientations: Turns, times: Series, thresholds: Thresholds) -> Turns:
     """Unit quaternions of continuous sign without what is faster than the cutoff."""
     smooth = lowpass(orientations, times, thresholds)
     return np.asarray(smooth / np.linalg.norm(smooth, axis=1, keepdims=True))
@@ -110,19 +102,15 @@ def gains(rate_hz: float, thresholds: Thresholds) -> tuple[float, float, float]:
     )
 
 
-def speed(
-    positions: Float[np.ndarray, "frames 3"], times: Float[np.ndarray, "frames"]
-) -> Float[np.ndarray, "frames"]:
+def speed(positions: Places, times: Series) -> Series:
     """Length of the velocity by central differences [m/s]; NaN where a position is unknown."""
     return np.linalg.norm(velocity(positions, times), axis=1)
 
 
-def velocity(
-    positions: Float[np.ndarray, "frames 3"], times: Float[np.ndarray, "frames"]
-) -> Float[np.ndarray, "frames 3"]:
+def velocity(positions: Places, times: Series) -> Places:
     """Rate of change by central differences [m/s]; each known stretch by itself, NaN stays."""
     out = np.full(positions.shape, np.nan)
-    known: Bool[np.ndarray, "frames"] = ~np.isnan(positions[:, 0])
+    known: Holds = ~np.isnan(positions[:, 0])
     for first, last in geometry.runs(known):
         part = slice(first, last + 1)
         out[part] = derivative(positions[part], times[part]) if last > first else 0.0
@@ -130,7 +118,7 @@ def velocity(
 
 
 def derivative(
-    values: Float[np.ndarray, "frames *axes"], times: Float[np.ndarray, "frames"]
+    values: Float[np.ndarray, "frames *axes"], times: Series
 ) -> Float[np.ndarray, "frames *axes"]:
     """Rate of change by differences with both neighbours, one-sided at the ends.
 
@@ -160,7 +148,7 @@ def _passed(
 def _filtered(
     weights: Float[np.ndarray, "taps"],
     values: Float[np.ndarray, "frames axes"],
-    times: Float[np.ndarray, "frames"],
+    times: Series,
     step: float,
 ) -> Float[np.ndarray, "frames axes"]:
     if len(values) < 4:

@@ -4,9 +4,10 @@ from collections.abc import Callable
 from weakref import ref
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool
 
 from capar.model import geometry
+from capar.model.geometry import Holds, Series
 
 DECIMALS = 9
 """Places to which a step of time is rounded: nanoseconds, so that any part has the whole's step."""
@@ -15,7 +16,7 @@ _KEPT: dict[int, tuple["ref[np.ndarray]", float]] = {}
 """Steps of clocks that cannot change, by their identity, as long as they live."""
 
 
-def time_step(times: Float[np.ndarray, "frames"]) -> float:
+def time_step(times: Series) -> float:
     """The median step of a clock [s]."""
     if times.flags.writeable:
         return _median_step(times)
@@ -27,11 +28,11 @@ def time_step(times: Float[np.ndarray, "frames"]) -> float:
     return step
 
 
-def _median_step(times: Float[np.ndarray, "frames"]) -> float:
+def _median_step(times: Series) -> float:
     return round(float(np.median(np.diff(times))), DECIMALS)
 
 
-def frame_rate(times: Float[np.ndarray, "frames"]) -> float:
+def frame_rate(times: Series) -> float:
     """Frames a second, from the median step [Hz]."""
     return 1.0 / time_step(times)
 
@@ -47,22 +48,13 @@ NEAREST = 64
 
 
 def intervals(
-    holds: Bool[np.ndarray, "frames"],
-    times: Float[np.ndarray, "frames"],
-    *,
-    dropout_s: float,
-    minimum_s: float,
-    known: Bool[np.ndarray, "frames"] | None = None,
+    holds: Holds, times: Series, *, dropout_s: float, minimum_s: float, known: Holds | None = None
 ) -> list[Interval]:
     """Where something holds, with short interruptions closed, then short stretches dropped.
 
-    Args:
-        holds: Whether it holds at each frame.
-        times: Clock [s].
-        dropout_s: An interruption shorter than this is closed [s].
-        minimum_s: A stretch shorter than this is dropped [s]; a stretch of one frame lasts one
-            step of time.
-        known: Frames at which it can be known at all; unknown ones, if long, stay interruptions.
+    ``holds``: whether it holds at each frame. ``dropout_s``: an interruption shorter than this is
+    closed [s]. ``minimum_s``: A stretch shorter than this is dropped [s]; a stretch of one frame
+    lasts one step of time.
     """
     seen = holds if known is None else holds & known
     if not seen.any():
@@ -77,12 +69,12 @@ def intervals(
     return [each for each in closed if duration(each, times, step) >= minimum_s - 1e-9]
 
 
-def duration(interval: Interval, times: Float[np.ndarray, "frames"], step: float) -> float:
+def duration(interval: Interval, times: Series, step: float) -> float:
     """How long the frames of an interval last [s], each for one step of time [s]."""
     return float(times[interval[1]] - times[interval[0]]) + step
 
 
-def mask(found: list[Interval], frames: int) -> Bool[np.ndarray, "frames"]:
+def mask(found: list[Interval], frames: int) -> Holds:
     """Whether each frame lies in one of the intervals."""
     out = np.zeros(frames, dtype=bool)
     for first, last in found:

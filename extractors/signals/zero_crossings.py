@@ -7,33 +7,26 @@ each corner, and a start from rest and a stop as the ends of a stretch of rest.
 """
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Int
 from scipy.ndimage import minimum_filter1d
 
 from capar.model import geometry
+from capar.model.geometry import Holds, Series
 from extractors.signals.filters import gains
 from extractors.signals.intervals import duration, frame_rate, intervals, time_step
 from extractors.thresholds import Thresholds
 
 
 def zero_crossings(
-    speed_mps: Float[np.ndarray, "frames"],
-    times: Float[np.ndarray, "frames"],
-    *,
-    noise_m: float,
-    highest_mps: float,
-    thresholds: Thresholds,
+    speed_mps: Series, times: Series, *, noise_m: float, highest_mps: float, thresholds: Thresholds
 ) -> Int[np.ndarray, "crossings"]:
     """Frames, ascending, at which the speed of a low-passed stream starts, stops or turns.
 
     The first and the last frame count. Frames at which the stream was lost do not.
 
-    Args:
-        speed_mps: Speed of the low-passed stream [m/s]; NaN where it was lost.
-        times: Clock [s].
-        noise_m: Deviation of one unfiltered coordinate at rest [m].
-        highest_mps: Highest speed of the stream in the whole recording [m/s].
-        thresholds: Prominence and rest.
+    ``speed_mps``: speed of the low-passed stream [m/s]; NaN where it was lost. ``noise_m``:
+    deviation of one unfiltered coordinate at rest [m]. ``highest_mps``: highest speed of the stream
+    in the whole recording [m/s].
     """
     rate_hz = frame_rate(times)
     reach = horizon_frames(times, thresholds)
@@ -54,23 +47,21 @@ def zero_crossings(
     return np.array(sorted(found), dtype=np.int64)
 
 
-def horizon_frames(times: Float[np.ndarray, "frames"], thresholds: Thresholds) -> int:
+def horizon_frames(times: Series, thresholds: Thresholds) -> int:
     """How many frames about an extremum of speed its prominence and neighbours are sought."""
     return max(1, round(thresholds.extremum_horizon_s / time_step(times)))
 
 
 def pauses(
-    speed_mps: Float[np.ndarray, "frames"], crossings: Int[np.ndarray, "crossings"], reach: int
+    speed_mps: Series, crossings: Int[np.ndarray, "crossings"], reach: int
 ) -> Int[np.ndarray, "pauses"]:
     """Those crossings, the capture's first and last frame aside, that are no maximum of speed.
 
     A maximum is faster than the crossing before and the one after. Where one of these is far away,
     it is faster than the frames beside it.
 
-    Args:
-        speed_mps: Speed of the low-passed stream [m/s].
-        crossings: Zero crossings, ascending.
-        reach: How many frames away a neighbour counts.
+    ``speed_mps``: speed of the low-passed stream [m/s]. ``crossings``: zero crossings, ascending.
+    ``reach``: how many frames away a neighbour counts.
     """
     if len(crossings) < 3:
         return crossings[:0]
@@ -81,7 +72,7 @@ def pauses(
     return crossings[1:-1][~highest]
 
 
-def _local_maxima(speed_mps: Float[np.ndarray, "frames"]) -> Bool[np.ndarray, "frames"]:
+def _local_maxima(speed_mps: Series) -> Holds:
     """Whether each frame is faster than the one before and no slower than the one after."""
     rises = np.diff(speed_mps) > 0.0
     return np.concatenate(([False], rises[:-1] & ~rises[1:], [False]))
@@ -90,20 +81,11 @@ def _local_maxima(speed_mps: Float[np.ndarray, "frames"]) -> Bool[np.ndarray, "f
 _INNER, _EARLIER, _LATER = slice(1, -1), slice(None, -2), slice(2, None)
 
 
-def rests(
-    speed_mps: Float[np.ndarray, "frames"],
-    times: Float[np.ndarray, "frames"],
-    *,
-    noise_mps: float,
-    thresholds: Thresholds,
-) -> Bool[np.ndarray, "frames"]:
+def rests(speed_mps: Series, times: Series, *, noise_mps: float, thresholds: Thresholds) -> Holds:
     """Whether each frame lies in a stretch of rest, from where speed ceased to fall.
 
-    Args:
-        speed_mps: Speed [m/s]; NaN where it is not known, and there is no rest.
-        times: Clock [s].
-        noise_mps: Size of the speed that noise alone makes [m/s].
-        thresholds: Speed and least duration of rest.
+    ``speed_mps``: speed [m/s]; NaN where it is not known, and there is no rest. ``noise_mps``: size
+    of the speed that noise alone makes [m/s].
     """
     limit = max(thresholds.rest_speed_mps, thresholds.rest_sigmas * noise_mps)
     slow = _to_the_ends(np.nan_to_num(speed_mps, nan=np.inf) < limit, speed_mps, times, thresholds)
@@ -117,12 +99,7 @@ def rests(
     return out
 
 
-def _to_the_ends(
-    slow: Bool[np.ndarray, "frames"],
-    speed_mps: Float[np.ndarray, "frames"],
-    times: Float[np.ndarray, "frames"],
-    thresholds: Thresholds,
-) -> Bool[np.ndarray, "frames"]:
+def _to_the_ends(slow: Holds, speed_mps: Series, times: Series, thresholds: Thresholds) -> Holds:
     """Slowness that begins or ends near the end of a known stretch reaches it.
 
     A filter knows a stretch's end from one side only, and makes more of the noise there.
@@ -138,9 +115,7 @@ def _to_the_ends(
     return out
 
 
-def _trimmed(
-    speed_mps: Float[np.ndarray, "frames"], first: int, last: int, reach: int
-) -> tuple[int, int]:
+def _trimmed(speed_mps: Series, first: int, last: int, reach: int) -> tuple[int, int]:
     """The stretch between the first and the last local minimum of speed near its ends."""
     begin, end = first, last
     if first > 0:
@@ -152,12 +127,7 @@ def _trimmed(
     return (begin, end) if begin <= end else (first, last)
 
 
-def _extrema(
-    speed: Float[np.ndarray, "frames"],
-    prominence: float,
-    resting: Bool[np.ndarray, "frames"],
-    reach: int,
-) -> set[int]:
+def _extrema(speed: Series, prominence: float, resting: Holds, reach: int) -> set[int]:
     """Prominent maxima and minima outside rest, and the ends of rest."""
     found: set[int] = set()
     for signal in (speed, -speed):
@@ -168,18 +138,14 @@ def _extrema(
     return found
 
 
-def prominent_peaks(
-    signal: Float[np.ndarray, "frames"], prominence: float, reach: int
-) -> Int[np.ndarray, "peaks"]:
+def prominent_peaks(signal: Series, prominence: float, reach: int) -> Int[np.ndarray, "peaks"]:
     """Local maxima that rise by a prominence above what lies between them and higher values.
 
     The middle of a flat top counts. It is ``scipy.signal.find_peaks`` without the half second that
     its import takes.
 
-    Args:
-        signal: Any quantity over time.
-        prominence: Least height above the higher of the lowest points on both sides.
-        reach: How many frames to each side are looked at.
+    ``signal``: any quantity over time. ``prominence``: least height above the higher of the lowest
+    points on both sides. ``reach``: how many frames to each side are looked at.
     """
     steps = np.flatnonzero(np.diff(signal))
     slopes = np.sign(np.diff(signal)[steps])
@@ -194,7 +160,7 @@ def prominent_peaks(
     return np.array(kept, dtype=np.int64)
 
 
-def _prominence(signal: Float[np.ndarray, "frames"], peak: int, reach: int) -> float:
+def _prominence(signal: Series, peak: int, reach: int) -> float:
     height = signal[peak]
     before = signal[max(peak - reach, 0) : peak + 1][::-1]
     after = signal[peak : peak + reach + 1]
