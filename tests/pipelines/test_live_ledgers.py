@@ -36,7 +36,6 @@ from capar.pipelines.live.frames import (
 )
 from capar.pipelines.live.ledgers import FactLedger, RuleMemory
 from capar.pipelines.live.observer import FirstMotion, LiveHorizons
-from capar.pipelines.live.result import ValuesFile
 from capar.pipelines.live.rule_process import RuleProcess, inferred
 from capar.pipelines.live.undecided import (
     Handling,
@@ -372,13 +371,6 @@ def test_a_fault_of_the_rules_is_told_by_a_worker_too(tmp_path: Path) -> None:
         asked.ask(measure(pick_and_place()).facts)
     assert asked.worker is not None
     asked.close()
-
-
-def test_values_are_read_from_disk_as_they_were_kept() -> None:
-    kept = ValuesFile()
-    places = [kept.add(list(range(number))) for number in (3, 0, 2)]
-    assert list(kept) == [0, 1, 2, 0, 1]
-    assert kept.at(places[2]) == [0, 1]
 
 
 def test_what_a_hand_does_with_a_thing_that_is_out_of_sight_is_undecided_for_a_while() -> None:

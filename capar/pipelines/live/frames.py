@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from tempfile import TemporaryFile
 
 import numpy as np
 from jaxtyping import Float
@@ -116,6 +117,46 @@ class FrameBuffer:
         for rows in (self._times, self._positions, self._orientations):
             rows[: self.longest] = rows[kept].copy()
         self._filled = self.longest
+
+
+class RecordedFrames:
+    """Every frame of a recording, on disk until it ends: memory does not grow with it.
+
+    Args:
+        rig: Bodies, shapes, agents; the poses of its streams are not read.
+    """
+
+    def __init__(self, rig: Capture) -> None:
+        self._rig = rig
+        self._file = TemporaryFile()  # noqa: SIM115
+        self._bodies = len(body_names(rig))
+
+    def push(self, poses: Poses) -> None:
+        """Keep a frame."""
+        row = np.concatenate(([poses.time_s], poses.positions.ravel(), poses.orientations.ravel()))
+        self._file.write(row.tobytes())
+
+    def capture(self) -> Capture:
+        """All frames as a capture.
+
+        Raises:
+            CaptureError: There are fewer than two.
+        """
+        self._file.seek(0)
+        table = np.frombuffer(self._file.read()).reshape(-1, 1 + 7 * self._bodies)
+        if len(table) < 2:
+            raise CaptureError("a live recording of fewer than two frames: nothing can be observed")
+        places, turns = np.split(table[:, 1:], [3 * self._bodies], axis=1)
+        streams = [
+            Stream(
+                table[:, 0].copy(),
+                places[:, 3 * row : 3 * row + 3].copy(),
+                turns[:, 4 * row : 4 * row + 4].copy(),
+            )
+            for row in range(self._bodies)
+        ]
+        rows = _distinct(self._rig)
+        return with_streams(self._rig, {name: streams[row] for name, row in rows.items()})
 
 
 def body_names(rig: Capture) -> tuple[str, ...]:

@@ -4,10 +4,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
 
 from capar import __version__
-from capar.model.calibration import BodyCalibration, Calibration
+from capar.model.calibration import Calibration
 from capar.model.capture import Capture, TagType
 from capar.model.errors import CaparError
 from capar.model.facts import (
@@ -28,111 +27,41 @@ from capar.model.facts import (
 from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import ComplexPar
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
-from capar.pipelines.live.frames import FrameBuffer, Poses, Window
-from capar.pipelines.live.ledgers import (
-    Contradictions,
-    FactLedger,
-    RuleMemory,
-    SegmentEvent,
-    SegmentLedger,
-)
-from capar.pipelines.live.result import CarriedPoses, CarriedSums, LiveResult
+from capar.pipelines.live.carried import Carried
+from capar.pipelines.live.frames import FrameBuffer, Poses, RecordedFrames, Window
+from capar.pipelines.live.ledgers import FactLedger, RuleMemory, SegmentEvent, SegmentLedger
 from capar.pipelines.live.rule_process import RuleProcess
 from capar.pipelines.live.undecided import Handling, awaited, decided_at, nameless, undecided
+from capar.pipelines.observation import observe_measured
 from capar_rules.borders.ticks import in_frames, times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.pars.inference import Inference
 from extractors.bodies.bodies import observed_object
 from extractors.calibration import thresholds_of
 from extractors.contact.contacts import EarlierAnswers
-from extractors.measure import Measurements, measured
+from extractors.measure import Measurements, measure, measured
 from extractors.relations.places import seek_rooms
 from extractors.relations.support import PART
 from extractors.signals.filters import filter_settles_s
 from kb.language.describe import describe
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Place:
-    """Where a thing was when it was touched, and its row in a frame."""
-
-    row: int
-    position: Float[np.ndarray, "3"]
-    orientation: Float[np.ndarray, "4"]
-    known: BodyCalibration
-
-    def is_left(self, poses: Poses) -> bool:
-        """Whether the thing is beyond the floor of its motion; not where it is lost."""
-        way_m = float(np.linalg.norm(poses.positions[self.row] - self.position))
-        cosine = abs(float(poses.orientations[self.row] @ self.orientation))
-        angle = 2.0 * float(np.arccos(min(cosine, 1.0)))
-        return way_m > self.known.motion_floor_m or angle > self.known.motion_floor_rad
-
-
-class FirstMotion:
-    """Things whose first motion is awaited: once one moves, something is decided.
-
-    It is asked of the poses as they are recorded, which costs next to nothing, so that the window
-    is measured as soon as there is something new to see in it.
-
-    Args:
-        calibration: The floor of each thing's motion.
-        rows: The row of each body in a frame, by ``object NAME``.
-    """
-
-    def __init__(self, calibration: Calibration, rows: Mapping[str, int]) -> None:
-        self._calibration = calibration
-        self._rows = rows
-        self._places: list[_Place] = []
-        limits = thresholds_of(calibration)
-        self._least = 1 + round(limits.moving_minimum_s / calibration.step_s)
-        self._away = 0
-
-    def await_(self, window: Window, things: Mapping[str, int]) -> None:
-        """Ask of these things from now on, and of no others.
-
-        Args:
-            window: The last frames.
-            things: The frame at which each was touched first.
-        """
-        self._places = []
-        for name, frame in things.items():
-            stream = window.capture.bodies[name].stream
-            at = max(frame - window.first, 0)
-            self._places.append(
-                _Place(
-                    self._rows[f"object {name}"],
-                    stream.positions[at],
-                    stream.orientations[at],
-                    self._calibration.tag_object(name),
-                )
-            )
-
-    def is_seen(self, poses: Poses) -> bool:
-        """Whether one of them has moved in a frame, and for as long as makes a motion."""
-        self._away = self._away + 1 if any(place.is_left(poses) for place in self._places) else 0
-        return self._away >= self._least
+EDGES = ("starts_moving", "stops_moving")
+"""The events at the end of a segment whose frames are known later than others."""
 
 
 @dataclass(frozen=True, slots=True)
 class LiveHorizons:
-    """How far live observation looks back, and how long it waits before it settles anything.
-
-    Two windows slide over the frames. A short one is measured often and names segments; a long
-    one is measured seldom and gives the facts of the result, with the margin on both sides that
-    ``extractors.calibration`` proves.
-    """
+    """How far live observation looks back, and how long it waits before it settles anything."""
 
     stride_s: float = 0.45
-    """Between two measurements of the short window at most [s], in which segments are found; it is
-    measured once more as soon as one that was found is to be settled."""
+    """Between two measurements of the window at most [s]; it is measured once more as soon as a
+    segment that was found is to be settled."""
 
     grain_s: float = 1.0
-    """Short windows begin at multiples of this [s]: what is measured at their first frame is then
-    the same several times in a row, and is known."""
+    """Windows begin at multiples of this [s]: what is measured at their first frame is then the
+    same several times in a row, and is known."""
 
     watch_s: float = 0.05
-    """Between two measurements at least [s], where a thing moves whose first motion is awaited."""
+    """Between two measurements at least [s], where an object moves whose motion is awaited."""
 
     announce_s: float = 0.4
     """After its end a segment is announced [s]: ends that are newer still move, as much of what the
@@ -140,65 +69,51 @@ class LiveHorizons:
 
     settle_s: float = 0.5
     """After its end a segment is settled [s]: what later frames change in a smoothed pose after
-    0.4 s is less than a millionth of their way, and losses that are shorter than 0.1 s are filled.
+    0.4 s is less than a millionth of its path, and losses that are shorter than 0.1 s are filled.
     That is also longer than contacts that are dropped and gaps that are closed (0.1 s)."""
 
     edge_s: float = 0.75
-    """After its end a segment is settled at whose end a thing starts or stops [s], and so late
-    facts are kept: when it started is told by how its way grew until it was well beyond its
-    floor."""
+    """After its end a segment is settled at whose end an object starts or stops [s]: when it
+    started is found by how its path grew until it was well beyond its floor."""
 
     lasts_s: float = 0.1
-    """So much later than a rule asks for, what has to last for some time has lasted it [s]: by then
-    the filter knows the end of that time as well as it knows a segment that is announced."""
+    """How much later than a rule asks for something is taken to have lasted [s]."""
 
     fresh_s: float = 0.2
-    """So long a motion that has just begun may turn out to be none [s]: a glitch of the tracker, or
-    what the filter makes of the last frames."""
+    """How long a motion that has just begun may turn out to be none [s]: a glitch of the tracker,
+    or what the filter makes of the last frames."""
 
     near_s: float = 0.9
-    """So long it is awaited whether bodies touch again that have stayed near each other [s]: their
-    contact lasts then."""
+    """How long it is awaited whether bodies touch again that have stayed near each other [s]."""
 
     window_s: float = 4.0
-    """Least length of the short window [s]."""
+    """Least length of the window [s]."""
 
     motion_s: float = 10.0
     """It reaches back to the beginning of every motion that goes on, to so long ago at most [s]:
-    how a motion is parted is told from its beginning."""
+    how a motion is divided is known from its beginning."""
 
     rest_s: float = 30.0
-    """By how much of its rest the place of a resting body is told [s]: the median of a longer one
-    is that of its last part."""
+    """The place of a resting body is the median of so much of its rest [s]."""
 
     handing_s: float = 2.0
-    """While two end-effectors hold one thing, so long it is awaited who lets go of it [s]: whether
-    the other one takes it over depends on that."""
+    """While two end-effectors hold one object, so long it is awaited who lets go of it [s]."""
 
     rules_s: float = 20.0
     """How far back rules see at most [s]; flicker is resolved in windows of 10 s."""
 
     segments: int = 5
-    """So many settled segments of a link are told to the rules again, so that these know what a
-    segment follows; fewer where they last longer than ``rules_s``."""
-
-    block_s: float = 5.0
-    """Between two measurements of the long window [s]."""
-
-    margin_s: float = 9.0
-    """What the long window holds on either side of the block that it settles [s]: the calibration's
-    own margin. Nearly all of it is the horizon of extrema of speed, 4 s, twice."""
+    """How many settled segments of a link rules are told again, so that they know what a segment
+    follows; fewer where they last longer than ``rules_s``."""
 
     def __post_init__(self) -> None:
-        """Check that the windows hold what they are to settle.
+        """Check that the window holds what it is to settle.
 
         Raises:
-            CaparError: A window is shorter than what it must hold.
+            CaparError: It is shorter than what it must hold.
         """
-        if min(self.stride_s, self.grain_s, self.settle_s, self.block_s) <= 0.0:
-            raise CaparError(
-                "live horizons: expected stride, grain, settle and block longer than 0 s"
-            )
+        if min(self.stride_s, self.grain_s, self.settle_s) <= 0.0:
+            raise CaparError("live horizons: expected stride, grain and settle longer than 0 s")
         longest_s = max(self.settle_s, self.edge_s)
         if self.window_s < 2.0 * (longest_s + self.stride_s):
             raise CaparError(
@@ -207,91 +122,15 @@ class LiveHorizons:
                 f"{2.0 * (longest_s + self.stride_s):g} s"
             )
 
-    @property
-    def whole_s(self) -> float:
-        """Length of the long window [s]."""
-        return 2.0 * self.margin_s + self.block_s
 
-
-def horizons_of(calibration: Calibration, *, stride_s: float = 0.45) -> LiveHorizons:
-    """The horizons that a calibration calls for: by its margin, its filter, and its rests."""
+def horizons_of(calibration: Calibration) -> LiveHorizons:
+    """The horizons that a calibration calls for: by its filter and its rests."""
     known = calibration.horizons
     limits = thresholds_of(calibration)
-    settles_s = filter_settles_s(calibration.step_s, limits)
     return LiveHorizons(
-        stride_s=stride_s,
-        settle_s=settles_s + known.gap_s,
+        settle_s=filter_settles_s(calibration.step_s, limits) + known.gap_s,
         edge_s=max(limits.rest_begins_s, known.filter_s + known.gap_s),
-        margin_s=known.margin_s,
     )
-
-
-class Teller:
-    """Says what segments say, one at a time.
-
-    Args:
-        rig: Bodies and agents.
-        rules: The rule base, whose files say what primitives are called.
-    """
-
-    def __init__(self, rig: Capture, rules: Profile) -> None:
-        self._rig = rig
-        self._words = primitive_words(primitive_files(rules.added))
-        self._objects = tuple(observed_object(each) for each in rig.objects)
-
-    def sentence(self, segment: Segment, facts: Iterable[Fact]) -> str:
-        """What was done in a segment; empty where nothing was touched.
-
-        Args:
-            segment: The segment.
-            facts: Contacts and motions of some time before it.
-        """
-        if not segment.objects:
-            return ""
-        told = tuple(each for each in facts if isinstance(each, Touching | Moving | OfAgent))
-        return describe(self._observation(segment, told), words=self._words)
-
-    def _observation(self, segment: Segment, facts: Sequence[Fact]) -> Observation:
-        sensor = self._rig.sensor(segment.ee)
-        owner = self._rig.agent_of(sensor)
-        agent = next(each for each in self._rig.agents if each.name == owner)
-        own = replace(segment, index=0)
-        return Observation(
-            capture=self._rig.name,
-            profile="",
-            rules="",
-            version=__version__,
-            agent=agent,
-            duration_s=segment.end_s,
-            rate_hz=1.0,
-            frames=segment.last + 1,
-            objects=self._objects,
-            links=(ObservedLink(segment.ee, sensor.end_effector, sensor.side, (own,)),),
-            facts=tuple(facts),
-            upars=(),
-            ipars=(),
-            complex_par=ComplexPar("", (), segment.end_s, (), None, ()),
-            locations=(),
-            styles=(),
-            sources=(),
-            notices=(),
-        )
-
-
-EDGES = ("starts_moving", "stops_moving")
-"""The events at the end of a segment whose frames are known later than others."""
-
-NO_SIDE = "none"
-"""The side of an end-effector that is of no limb beside another."""
-
-
-@dataclass(frozen=True, slots=True)
-class Work:
-    """What one measurement of the short window cost and held, for those who watch over it."""
-
-    frames: int
-    facts: int
-    segments: int
 
 
 class LiveObserver:
@@ -303,8 +142,7 @@ class LiveObserver:
         rules: A rule profile or its name.
         name: What the whole action is called; the rig's name if empty.
         horizons: How far it looks back and how long it waits; None for what the calibration asks.
-        keep_result: Whether facts, segments and places are kept for ``finish``; without, memory
-            does not grow.
+        keep_result: Whether frames are kept on disk for ``finish``.
         sentences: Whether each announcement says in plain English what was done.
 
     Raises:
@@ -325,32 +163,23 @@ class LiveObserver:
         self.horizons = horizons or horizons_of(calibration)
         self.calibration = calibration
         self.rules = profile(rules) if isinstance(rules, str) else rules
+        self._name = name or rig.name
         self._step_s = calibration.step_s
         self._rate_mhz = round(1000.0 / self._step_s)
-        self._buffer = FrameBuffer(rig, self._frames(self.horizons.whole_s) + 1)
+        longest = self._frames(self.horizons.motion_s) + self._frames(self.horizons.grain_s) + 1
+        self._buffer = FrameBuffer(rig, longest)
+        self._recorded = RecordedFrames(rig) if keep_result else None
         self._facts = FactLedger()
-        self._sums = CarriedSums()
-        self._poses = CarriedPoses(calibration, self._frames(self.horizons.rest_s))
+        self._carried = Carried(calibration, self._frames(self.horizons.rest_s))
         self._memory = RuleMemory()
-        self._asked = RuleProcess(self.rules)
-        self._asked.warm((Frames(0, 1), RateMhz(self._rate_mhz)))
+        self.rules_process = RuleProcess(self.rules)
+        """What asks the rules, in this process or in others."""
+
+        self.rules_process.warm((Frames(0, 1), RateMhz(self._rate_mhz)))
         later = self._frames(self.horizons.edge_s) - self._frames(self.horizons.settle_s)
         self._segments = SegmentLedger(self.horizons.segments, dict.fromkeys(EDGES, later))
-        self._result = (
-            LiveResult(
-                rig,
-                calibration,
-                self.rules,
-                name or rig.name,
-                rate_mhz=self._rate_mhz,
-                rest_frames=self._frames(self.horizons.rest_s),
-            )
-            if keep_result
-            else None
-        )
-        self._teller = Teller(rig, self.rules) if sentences else None
-        shapes = (thing.shape for thing in rig.objects if thing.shape is not None)
-        seek_rooms(shapes, thresholds_of(calibration))
+        self._words = primitive_words(primitive_files(self.rules.added)) if sentences else None
+        seek_rooms((each.shape for each in rig.objects if each.shape), thresholds_of(calibration))
         self._answers = EarlierAnswers()
         self._first_motion = FirstMotion(calibration, self._buffer.streams)
         self._stirs = False
@@ -358,7 +187,6 @@ class LiveObserver:
         self._measured = 0
         self._frontier = -1
         self._forgotten = 0
-        self.work: Work = Work(0, 0, 0)
 
     @property
     def bodies(self) -> tuple[str, ...]:
@@ -370,20 +198,6 @@ class LiveObserver:
         """How many frames were pushed."""
         return self._buffer.count
 
-    def held(self) -> int:
-        """How many frames are held at most, however many were pushed."""
-        return self._buffer.longest
-
-    @property
-    def rules_process(self) -> RuleProcess:
-        """What asks the rules, in this process or in others."""
-        return self._asked
-
-    @property
-    def contradictions(self) -> Contradictions:
-        """How often a later answer of the rules differed from what was settled."""
-        return self._segments.contradictions
-
     def push(self, frames: Iterable[Poses]) -> list[SegmentEvent]:
         """Take frames, oldest first, and say what they show; measured once for all of them.
 
@@ -393,13 +207,28 @@ class LiveObserver:
         events: list[SegmentEvent] = []
         for poses in frames:
             self._buffer.push(poses)
-            self._settle_block()
+            if self._recorded is not None:
+                self._recorded.push(poses)
             self._stirs = self._stirs or self._first_motion.is_seen(poses)
             if self.frames - self._measured >= self._frames(self.horizons.window_s) // 2:
                 events += self._evaluate(last=False)
         if self._is_due():
             events += self._evaluate(last=False)
         return events
+
+    def finish(self) -> tuple[list[SegmentEvent], Observation | None]:
+        """Settle everything, and observe the whole recording; no frame follows.
+
+        Raises:
+            CaptureError: Fewer than two frames were pushed.
+        """
+        events = self._evaluate(last=True)
+        self.rules_process.close()
+        if self._recorded is None:
+            return events, None
+        capture = self._recorded.capture()
+        measurements = measure(capture, self.calibration)
+        return events, observe_measured(capture, measurements, rules=self.rules, name=self._name)
 
     def _is_due(self) -> bool:
         """Whether segments are to be sought again, or one that was found is to be settled."""
@@ -411,58 +240,44 @@ class LiveObserver:
             return True
         return self._lasting is not None and self._lasting < self.frames
 
-    def finish(self) -> tuple[list[SegmentEvent], Observation | None]:
-        """Settle everything; no frame follows.
-
-        Raises:
-            CaptureError: Fewer than two frames were pushed.
-        """
-        events = self._evaluate(last=True)
-        self._asked.close()
-        if self._result is None:
-            return events, None
-        window = self._buffer.window(self._frames(self.horizons.whole_s) + 1)
-        self._result.block(window, window.last)
-        return events, self._result.observation(window)
-
-    def _settle_block(self) -> None:
-        """Measure the long window once a block, and take what lies in the middle of it."""
-        if self._result is None or self.frames % self._frames(self.horizons.block_s):
-            return
-        window = self._buffer.window(self._frames(self.horizons.whole_s) + 1)
-        frontier = window.last - self._frames(self.horizons.margin_s)
-        if frontier > self._result.frontier:
-            self._result.block(window, frontier)
-
     def _evaluate(self, *, last: bool) -> list[SegmentEvent]:
-        """Measure the short window, and ask the rules over the last few segments."""
+        """Measure the window, and ask the rules over the last few segments."""
         self._measured, self._stirs = self.frames, False
         window = self._window()
         if len(window.capture.times) < 4:
             return []
         frontier = window.last - (0 if last else self._frames(self.horizons.settle_s))
         kept = window.last - (0 if last else self._frames(self.horizons.edge_s))
-        bodies = self._poses.bodies(window)
+        bodies = self._carried.bodies(window)
         self._answers.begin(window.first)
         measurements = measured(
             window.capture,
             self.calibration,
             bodies,
-            self._sums.since(window),
+            self._carried.sums(window),
             answers=self._answers,
             notices=False,
         )
-        if kept - self._sums.frame >= self._frames(self.horizons.grain_s):
-            self._sums.advance(window, measurements, kept)
-        self._poses.advance(window, bodies, kept)
+        grain = self._frames(self.horizons.grain_s)
+        if kept - self._carried.sums_frame >= grain:
+            self._carried.advance_sums(window, measurements, kept)
+        self._carried.advance_poses(window, bodies, kept)
         recent = self._facts.stitched(measurements.facts, window.first)
-        inference, count = self._inferred(measurements, recent, window.last)
+        always = [
+            fact
+            for fact in measurements.facts
+            if isinstance(fact, Observed)
+            and not fact.ends()
+            and not isinstance(fact, Frames | RateMhz)
+        ]
+        facts: list[Fact] = [Frames(0, window.last), RateMhz(self._rate_mhz), *always]
+        inference = self.rules_process.ask([*facts, *self._memory, *recent])
         handling = self._handling(measurements, recent, window)
+        told = (*self._memory, *recent)
         sure = kept if last else min(kept, handling.sure)
         self._memory.add(self._facts.settle(recent, max(sure, self._facts.frontier)))
-        time_s = self._buffer.time_s(window.last)
         self._first_motion.await_(window, awaited(handling))
-        events, done = self._segments.take(
+        events = self._segments.take(
             inference,
             now=window.last,
             ended=window.last - self._frames(self.horizons.announce_s),
@@ -470,20 +285,21 @@ class LiveObserver:
             undecided=handling.with_margin(undecided(handling)),
             unseen=handling.with_margin(nameless(handling)),
             rate_hz=self._rate_mhz / 1000.0,
-            time_s=time_s,
+            time_s=self._buffer.time_s(window.last),
         )
         self._frontier = frontier
         self._lasting = self._next_lasting(recent, decided_at(handling), window.last)
-        if self.frames - self._forgotten >= self._frames(self.horizons.grain_s):
+        if self.frames - self._forgotten >= grain:
             self._forgotten = self.frames
-            self._memory.forget(self._rules_begin(window), self._segments.ends(), self._frames(1.0))
-        self.work = Work(len(window.capture.times), count, len(done))
-        if self._result is not None:
-            self._result.segments(done)
-        return self._told(events, recent)
+            oldest = window.last - self._frames(self.horizons.rules_s)
+            begin = max(0, oldest, self._segments.first_needed(window.last))
+            self._memory.forget(begin, self._segments.ends(), self._frames(1.0))
+        if self._words is None:
+            return events
+        return [replace(each, sentence=self._sentence(each.segment, told)) for each in events]
 
     def _window(self) -> Window:
-        """The short window: it begins at a multiple of the grain, before every motion that goes on.
+        """The last frames, from a multiple of the grain and before every motion that goes on.
 
         From the grain before it, so that the place that is left is known.
         """
@@ -495,38 +311,14 @@ class LiveObserver:
         begin = max(0, begin) // grain * grain
         return self._buffer.window(self.frames - begin)
 
-    def _told(self, events: list[SegmentEvent], recent: list[Observed]) -> list[SegmentEvent]:
-        """The announcements with their sentences, where they are asked for."""
-        if self._teller is None or not events:
-            return events
-        facts = (*self._memory, *recent)
-        return [
-            replace(each, sentence=self._teller.sentence(each.segment, facts)) for each in events
-        ]
-
-    def _inferred(
-        self, measurements: Measurements, recent: list[Observed], last: int
-    ) -> tuple[Inference, int]:
-        """What the rules say up to a frame, and over how many facts."""
-        always = [
-            each
-            for each in measurements.facts
-            if isinstance(each, Observed)
-            and not each.ends()
-            and not isinstance(each, Frames | RateMhz)
-        ]
-        facts: list[Fact] = [Frames(0, last), RateMhz(self._rate_mhz), *always]
-        facts += self._memory
-        facts += recent
-        return self._asked.ask(facts), len(facts)
-
     def _handling(
         self, measurements: Measurements, recent: list[Observed], window: Window
     ) -> Handling:
         """What is touched, moves and is lost, where later frames may decide."""
         facts = (*self._memory, *recent)
-        acting = {sensor.name for sensor in self._buffer.rig.acting}
-        fixed = {thing.name for thing in self._buffer.rig.objects if thing.tag is TagType.FIXED}
+        rig = self._buffer.rig
+        acting = {sensor.name for sensor in rig.acting}
+        fixed = {each.name for each in rig.objects if each.tag is TagType.FIXED}
         lost = {
             name: window.first + int(np.flatnonzero(~body.stream.lost)[-1])
             for name, body in window.capture.bodies.items()
@@ -535,7 +327,7 @@ class LiveObserver:
         return Handling(
             [fact for fact in facts if isinstance(fact, Touching) and fact.body in acting],
             [fact for fact in facts if isinstance(fact, Moving)],
-            {thing.name for thing in self._buffer.rig.objects if thing.tag is TagType.MOBILE},
+            {each.name for each in rig.objects if each.tag is TagType.MOBILE},
             last=window.last,
             margin=round(in_frames(times().merge_ms, self._rate_mhz / 1000.0)),
             longest=self._frames(self.horizons.handing_s),
@@ -547,8 +339,8 @@ class LiveObserver:
             fresh=self._frames(self.horizons.fresh_s),
             lingering=self._lingering(measurements, facts, lost, window),
             arriving={
-                thing: replace(rest, first=window.first + rest.first)
-                for thing, rest in measurements.arriving.items()
+                name: replace(rest, first=window.first + rest.first)
+                for name, rest in measurements.arriving.items()
             },
             fast={
                 (fact.body, fact.other, fact.first)
@@ -557,9 +349,9 @@ class LiveObserver:
             },
             laid=[fact for fact in facts if isinstance(fact, Touching) and fact.other in fixed],
             limbs={
-                sensor.name: (self._buffer.rig.agent_of(sensor), sensor.side)
-                for sensor in self._buffer.rig.acting
-                if sensor.side != NO_SIDE
+                sensor.name: (rig.agent_of(sensor), sensor.side)
+                for sensor in rig.acting
+                if sensor.side != "none"
             },
         )
 
@@ -570,14 +362,7 @@ class LiveObserver:
         lost: Mapping[str, int],
         window: Window,
     ) -> dict[tuple[str, str], int]:
-        """Bodies that may be said to have touched on, and when they were last seen to touch.
-
-        Args:
-            measurements: What was measured in the window.
-            facts: Facts up to the newest frame.
-            lost: Of each body that is not seen now, the last frame in which it was.
-            window: The last frames.
-        """
+        """Bodies whose contact may turn out to have gone on, and when they were last in contact."""
         oldest = window.last - self._frames(self.horizons.near_s)
         near = ((pair, window.first + at) for pair, at in measurements.lingering.items())
         out = {pair: at for pair, at in near if at >= oldest}
@@ -592,13 +377,14 @@ class LiveObserver:
     def _next_lasting(
         self, recent: Iterable[Observed], decided: Iterable[int], last: int
     ) -> int | None:
-        """The next frame at which something has lasted long enough to be told; None without.
+        """The next frame at which something has lasted as long as a rule asks for; None without.
 
-        Of rests only those count in which nothing is touched: only they are told.
+        Of rests only those count in which nothing is touched: only they are named. A foot that
+        bears a part of the weight is asked for no duration.
 
         Args:
             recent: Facts up to the newest frame.
-            decided: Frames at which more is known than by rests and stands.
+            decided: Frames at which more is known for other reasons.
             last: The newest frame.
         """
         rate_hz = self._rate_mhz / 1000.0
@@ -607,7 +393,11 @@ class LiveObserver:
             Bears: in_frames(times().one_leg_ms, rate_hz),
         }
         late = self._frames(self.horizons.lasts_s)
-        going = [fact for fact in recent if fact.ends()[-1:] == (last,) and not _in_part(fact)]
+        going = [
+            fact
+            for fact in recent
+            if fact.ends()[-1:] == (last,) and not (isinstance(fact, Bears) and fact.share == PART)
+        ]
         touching = {fact.body for fact in going if isinstance(fact, Touching)}
         frames = (
             fact.ends()[0] + round(least[type(fact)]) + late
@@ -616,14 +406,79 @@ class LiveObserver:
         )
         return min((frame for frame in (*frames, *decided) if frame > last), default=None)
 
-    def _rules_begin(self, window: Window) -> int:
-        oldest = window.last - self._frames(self.horizons.rules_s)
-        return max(0, oldest, self._segments.first_needed(window.last))
+    def _sentence(self, segment: Segment, facts: Sequence[Fact]) -> str:
+        """What was done in a segment, in plain English; empty where nothing was touched."""
+        if not segment.objects:
+            return ""
+        rig = self._buffer.rig
+        sensor = rig.sensor(segment.ee)
+        owner = rig.agent_of(sensor)
+        own = replace(segment, index=0)
+        alone = Observation(
+            capture=rig.name,
+            profile="",
+            rules="",
+            version=__version__,
+            agent=next(each for each in rig.agents if each.name == owner),
+            duration_s=segment.end_s,
+            rate_hz=1.0,
+            frames=segment.last + 1,
+            objects=tuple(observed_object(each) for each in rig.objects),
+            links=(ObservedLink(segment.ee, sensor.end_effector, sensor.side, (own,)),),
+            facts=tuple(each for each in facts if isinstance(each, Touching | Moving | OfAgent)),
+            upars=(),
+            ipars=(),
+            complex_par=ComplexPar("", (), segment.end_s, (), None, ()),
+            locations=(),
+            styles=(),
+            sources=(),
+            notices=(),
+        )
+        return describe(alone, words=self._words)
 
     def _frames(self, duration_s: float) -> int:
         return max(1, round(duration_s / self._step_s))
 
 
-def _in_part(fact: Observed) -> bool:
-    """Whether it tells that a foot bears a part of the weight, which no rule asks to last."""
-    return isinstance(fact, Bears) and fact.share == PART
+class FirstMotion:
+    """Objects whose first motion is awaited: once one moves, something is decided.
+
+    It is asked of the poses as they are recorded, so that the window is measured as soon as there
+    is something new to see in it.
+
+    Args:
+        calibration: The floor of each object's motion.
+        rows: The row of each body in a frame, by ``object NAME``.
+    """
+
+    def __init__(self, calibration: Calibration, rows: Mapping[str, int]) -> None:
+        self._calibration = calibration
+        self._rows = rows
+        self._places: list[tuple[int, np.ndarray, np.ndarray, float, float]] = []
+        """Row, position, orientation, and the floors [m, rad] of each."""
+
+        limits = thresholds_of(calibration)
+        self._least = 1 + round(limits.moving_minimum_s / calibration.step_s)
+        self._away = 0
+
+    def await_(self, window: Window, touched: Mapping[str, int]) -> None:
+        """Ask of these objects from now on, by the frame at which each was touched first."""
+        self._places = []
+        for name, frame in touched.items():
+            stream, known = window.capture.bodies[name].stream, self._calibration.tag_object(name)
+            at = max(frame - window.first, 0)
+            row, floors = (
+                self._rows[f"object {name}"],
+                (known.motion_floor_m, known.motion_floor_rad),
+            )
+            self._places.append((row, stream.positions[at], stream.orientations[at], *floors))
+
+    def is_seen(self, poses: Poses) -> bool:
+        """Whether one of them has moved in a frame, and for as long as makes a motion."""
+        left = False
+        for row, position, orientation, floor_m, floor_rad in self._places:
+            cosine = abs(float(poses.orientations[row] @ orientation))
+            left |= float(np.linalg.norm(poses.positions[row] - position)) > floor_m
+            left |= 2.0 * float(np.arccos(min(cosine, 1.0))) > floor_rad
+        self._away = self._away + 1 if left else 0
+        return self._away >= self._least
