@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -9,25 +10,13 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.spatial.transform import RigidTransform
 
-from capar.body.fingers import closings, with_closings
-from capar.body.fit_warnings import (
-    closed_hands,
-    corners_of,
-    is_floor,
-    object_remarks,
-    passing_legs,
-    posture_remarks,
-    recorded_feet,
-    recorded_spine,
-    remarks,
-    stand_off,
-)
+from capar.body.fingers import closed_hands
 from capar.body.joint_fitting import fit_joints
 from capar.body.marker_fitting import LEAST_EXACT, fit_markers
-from capar.body.point_fitting import SkeletonFit
+from capar.body.point_fitting import PointFit
 from capar.body.recording import HAND_SEGMENTS
 from capar.body.sensor_fitting import Fit, fit_capture
-from capar.body.shapes import segment_surface
+from capar.body.shapes import moved, segment_surface
 from capar.model import geometry
 from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagType
 from extractors.readers.bundle.capture_toml import files_of
@@ -45,6 +34,32 @@ from extractors.readers.names import (
 
 LEAST_JOINTS = 0.6
 """Bodies are the joints of a skeleton if a convention has so many of its places among them [1]."""
+
+FLOOR_M, FLOOR_THICK_M = 1.5, 0.3
+"""A fixed object as wide as this both ways, and no thicker, is a floor [m]."""
+
+FAR_M, FLOATING_M, MOST_NAMES = 0.03, 0.03, 10
+"""Residuals, and heights of the lower sole above the floor in the median, that are reported [m];
+how many names a warning lists."""
+
+TOUCHED = {"head": ("head",), **{f"{s}_foot": (f"{s}_foot", f"{s}_toes") for s in SIDES}}
+HANDS = {f"{side}_hand": tuple(f"{side}_{name}" for name in HAND_SEGMENTS) for side in SIDES}
+"""Parts of the body that are touched, and hands, with the segments that their surfaces are of."""
+
+FITTED_M = 0.01
+"""Surfaces of a fitted body count as touching up to this distance at least [m]: they are off by as
+much as its limb lengths and the places of its sensors are, some millimetres."""
+
+SOLES = ("right_sole", "left_sole")
+WARNINGS = {
+    "far": "far from their places on the body; check their names, the unit and the measures",
+    "misplaced": "markers far from the landmarks of their names; check which is which",
+    "unrecorded": "nothing is recorded of these parts, their posture is assumed",
+    "no floor": "floor; state it as a fixed object",
+    "floating": "the lower sole is above the floor; check the floor and the unit",
+    "stretching": "bones change their length; check which points belong together",
+}
+"""What is reported of a fitted body, with the remedy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,41 +153,80 @@ def _faces(
     return None
 
 
-def remarks_on(place: str | Path, capture: Capture, made: Fit) -> list[str]:
-    """What a reader of the fitted body's pictures asks about.
+def fit_warnings(place: str | Path, capture: Capture, made: Fit) -> list[str]:
+    """What does not suit the body, each with what a user can do about it (``WARNINGS``).
 
     Args:
         place: Where the capture is described.
         capture: The same, read.
         made: The body fitted to it.
-
-    Raises:
-        CaparError: As of ``fit_body``.
     """
     found = whole_body(place)
-    said = [*remarks(made, capture, ground(capture)), *_stretching(capture)]
-    said += posture_remarks(made, capture) + object_remarks(made, capture) + passing_legs(made)
-    if found is not None:
-        hands = closings(made.human, made.motion, found.points, found.names)
-        said += closed_hands(made, hands)
-        said += recorded_spine(made, found.points) + recorded_feet(made, found.points)
-        said += stand_off(made, found.names)
-    return said
+    floor = ground(capture)
+    lower = np.minimum(*(made.human.sites(made.motion, [s])[s][0][:, 2] for s in SOLES))
+    floats_m = 0.0 if floor is None else float(np.median(lower)) - floor
+    feet_seen = not {"right_foot", "left_foot"} & set(made.unrecorded)
+    stretching = [each.message for each in capture.notices if each.code == "bone-stretches"]
+    found_of = {
+        "far": _far(made),
+        "misplaced": _misplaced(made, found.names) if found else [],
+        "unrecorded": _unrecorded(made),
+        "no floor": ["none in the capture"] if floor is None else [],
+        "floating": [f"{1e3 * floats_m:.0f} mm"] if feet_seen and floats_m > FLOATING_M else [],
+        "stretching": list(dict.fromkeys(stretching)),
+    }
+    return [
+        f"{text}: {', '.join(found_of[kind])}" for kind, text in WARNINGS.items() if found_of[kind]
+    ]
 
 
-def _stretching(capture: Capture) -> list[str]:
-    """The notices of bones that change their length, of which views draw no shape."""
-    told = [one.message for one in capture.notices if one.code == "bone-stretches"]
-    return [f"{text}; views draw its body as a point" for text in dict.fromkeys(told)]
+def _far(made: Fit) -> list[str]:
+    """Points and sensors that are far from their places on the body, the worst first."""
+    peaks = {n: float(np.nanmax(m)) for n, m in made.residuals_m.items() if np.isfinite(m).any()}
+    worst = sorted((name for name in peaks if peaks[name] > FAR_M), key=lambda name: -peaks[name])
+    return [
+        f"{name} by {1e3 * peaks[name]:.0f} mm at "
+        f"{made.times[int(np.nanargmax(made.residuals_m[name]))]:.2f} s"
+        for name in worst[:MOST_NAMES]
+    ]
+
+
+def _misplaced(made: Fit, names: Mapping[str, BodyName]) -> list[str]:
+    """Markers that are far from the landmarks of their names, the worst of each segment."""
+    model = made.human.model
+    sites = {model.site(number).name: number for number in range(model.nsite)}
+    apart: dict[str, tuple[float, str]] = {}
+    for name, segment in made.segments.items():
+        own = sites.get(f"marker_{name}")
+        usual = sites.get(names[name].place) if name in names and names[name].exact else None
+        if own is not None and usual is not None:
+            metres = float(np.linalg.norm(model.site_pos[own] - model.site_pos[usual]))
+            same = model.site_bodyid[own] == model.site_bodyid[usual]
+            if same and metres > FAR_M:
+                apart[segment] = max(apart.get(segment, (0.0, "")), (metres, name))
+    return [f"{name} by {1e3 * metres:.0f} mm" for metres, name in sorted(apart.values())[::-1]]
+
+
+def _unrecorded(made: Fit) -> list[str]:
+    """Limbs, head and pelvis of which nothing is followed; a limb's parts are not listed too."""
+    unseen = set(made.unrecorded)
+    out = []
+    for side in SIDES:
+        for chain in (("upper_arm", "forearm", "hand"), ("thigh", "foot")):
+            out += [f"{side}_{part}" for part in chain if f"{side}_{part}" in unseen][:1]
+    return [*out, *(name for name in ("head", "pelvis") if name in unseen)]
 
 
 def ground(capture: Capture) -> float | None:
     """Height of the lowest level floor that a capture has, as wide as one [m]."""
     tops = []
     for thing in capture.objects:
-        corners = corners_of(thing)
-        if len(corners) and is_floor(thing, corners):
-            tops.append(float(corners[:, 2].max()))
+        if thing.shape is not None and thing.tag is TagType.FIXED:
+            pose = geometry.transforms(thing.stream.positions[0], thing.stream.orientations[0])
+            corners = pose.apply(np.array(thing.shape.vertices))
+            wide = np.ptp(corners[:, :2], axis=0).min() > FLOOR_M
+            if wide and np.ptp(corners[:, 2]) < FLOOR_THICK_M:
+                tops.append(float(corners[:, 2].max()))
     return min(tops, default=None)
 
 
@@ -184,19 +238,18 @@ def fit_places(found: Places, *, ground_m: float | None = None) -> Fit:
         ground_m: Height of the ground on which feet stand, where it is known [m].
     """
     began = time.perf_counter()
-    made = _skeleton(found, ground_m)
-    hands = closings(made.human, made.motion, found.points, found.names)
-    motion = with_closings(made.human, made.motion, hands)
+    made = _followed(found, ground_m)
+    motion = closed_hands(made.human, made.motion, found.points, found.names)
     seconds = time.perf_counter() - began
     lost = {name: np.isnan(found.points[name]).any(axis=1) for name in made.residuals_m}
     return Fit(made.human, found.times, motion, lost, made.residuals_m, {}, seconds, made.segments)
 
 
-def _skeleton(found: Places, ground_m: float | None) -> SkeletonFit:
+def _followed(found: Places, ground_m: float | None) -> PointFit:
     """By the convention of a skeleton, where there are joints only; else by places of markers."""
     titles = {each.title for each in conventions().values() if each.markers}
     if not any(each.by in titles for each in found.names.values()):
-        try:
+        with suppress(ConventionError):
             return fit_joints(
                 found.points,
                 recognise(found.names),
@@ -204,27 +257,11 @@ def _skeleton(found: Places, ground_m: float | None) -> SkeletonFit:
                 stated=found.stated,
                 faces=found.faces,
             )
-        except ConventionError:
-            pass
-    return fit_markers(found.points, found.names, ground_m=ground_m).skeleton
-
-
-FEET = {f"{side}_foot": (f"{side}_foot", f"{side}_toes") for side in SIDES}
-"""Feet with the segments that their surfaces are of."""
-
-HEAD = {"head": ("head",)}
-"""The same of the head, of which the mouth is a part."""
-
-HANDS = {f"{side}_hand": tuple(f"{side}_{name}" for name in HAND_SEGMENTS) for side in SIDES}
-"""The same of hands."""
-
-FITTED_M = 0.01
-"""Surfaces of a fitted body count as touching up to this distance at least [m]: they are off by as
-much as its limb lengths and the places of its sensors are, some millimetres."""
+    return fit_markers(found.points, found.names, ground_m=ground_m)
 
 
 def with_body_parts(capture: Capture, made: Fit) -> Capture:
-    """The capture with parts of its performer's body as things to touch.
+    """The capture with parts of its performer's body as objects that are touched.
 
     The head and the feet become SELF objects, unless the capture has an object of that name, an
     end-effector is there, or nothing of them was recorded. Hands without a shape get that of the
@@ -235,30 +272,24 @@ def with_body_parts(capture: Capture, made: Fit) -> Capture:
         made: The body fitted to it.
     """
     nearest = np.abs(made.times[None] - capture.times[:, None]).argmin(axis=1)
-    taken = {thing.name for thing in capture.objects} | {
-        _place(sensor) for sensor in capture.acting if _is_own(capture, sensor)
-    }
-    parts = {name: segments for name, segments in (HEAD | FEET).items() if name not in taken}
-    unseen = set(made.unrecorded)
-    added = [
-        _part(capture, made, name, segments, nearest)
-        for name, segments in parts.items()
-        if name not in unseen
-    ]
-    sensors = tuple(_with_surface(capture, made, sensor, nearest) for sensor in capture.sensors)
-    shaped = sensors != capture.sensors or bool(added)
-    tolerance = max(capture.contact_tolerance_m or 0.0, FITTED_M) if shaped else None
+    own = [each for each in capture.sensors if capture.agent_of(each) == capture.agent.name]
+    taken = {thing.name for thing in capture.objects} | set(made.unrecorded)
+    taken |= {_place(sensor) for sensor in own if sensor in capture.acting}
+    added = [_part(capture, made, name, nearest) for name in TOUCHED if name not in taken]
+    sensors = tuple(
+        replace(each, shape=_shape_on(made, _place(each), each.stream, nearest))
+        if each in own and _place(each) in HANDS and each.shape is None and not each.part_of
+        else each
+        for each in capture.sensors
+    )
+    if not added and sensors == capture.sensors:
+        return capture
     return replace(
         capture,
         sensors=sensors,
         objects=(*capture.objects, *added),
-        contact_tolerance_m=tolerance or capture.contact_tolerance_m,
+        contact_tolerance_m=max(capture.contact_tolerance_m or 0.0, FITTED_M),
     )
-
-
-def _is_own(capture: Capture, sensor: Sensor) -> bool:
-    """Whether a sensor rides on the first agent's body, which is the fitted one."""
-    return capture.agent_of(sensor) == capture.agent.name
 
 
 def _place(sensor: Sensor) -> str:
@@ -267,19 +298,12 @@ def _place(sensor: Sensor) -> str:
     return f"{side}{sensor.end_effector}"
 
 
-def _part(
-    capture: Capture,
-    made: Fit,
-    name: str,
-    segments: tuple[str, ...],
-    nearest: Int[np.ndarray, "frames"],
-) -> TagObject:
+def _part(capture: Capture, made: Fit, name: str, nearest: Int[np.ndarray, "frames"]) -> TagObject:
     """A part of the body that is touched; with the sensor of its name where there is one."""
-    surface = segment_surface(made.human.measures, segments, name)
-    worn = next((sensor for sensor in capture.sensors if sensor.name == name), None)
+    worn = next((sensor.stream for sensor in capture.sensors if sensor.name == name), None)
     if worn is not None:
-        moved = _in_frame(made, name, worn.stream, nearest)
-        return TagObject(name, TagType.SELF, worn.stream, _moved(surface, moved), name)
+        shape = _shape_on(made, name, worn, nearest)
+        return TagObject(name, TagType.SELF, worn, shape, name)
     spots, turns = made.human.sites(made.motion, [name])[name]
     lost = _lost(made)[nearest][:, None]
     stream = Stream(
@@ -287,37 +311,20 @@ def _part(
         positions=np.where(lost, np.nan, spots[nearest]),
         orientations=np.where(lost, np.nan, turns[nearest]),
     )
+    shape = segment_surface(made.human.measures, TOUCHED[name], name)
     kind = name.rpartition("_")[2]
-    return TagObject(name, TagType.SELF, stream, surface, kind, agent=capture.agent.name)
+    return TagObject(name, TagType.SELF, stream, shape, kind, agent=capture.agent.name)
 
 
-def _with_surface(
-    capture: Capture, made: Fit, sensor: Sensor, nearest: Int[np.ndarray, "frames"]
-) -> Sensor:
-    """A hand with the fitted body's surface, where it has none of its own."""
-    place = _place(sensor)
-    if (
-        sensor.shape is not None
-        or sensor.part_of
-        or place not in HANDS
-        or not _is_own(capture, sensor)
-    ):
-        return sensor
-    surface = segment_surface(made.human.measures, HANDS[place], place)
-    moved = _in_frame(made, place, sensor.stream, nearest)
-    return replace(sensor, shape=_moved(surface, moved))
-
-
-def _in_frame(
-    made: Fit, segment: str, stream: Stream, nearest: Int[np.ndarray, "frames"]
-) -> RigidTransform:
-    """A segment in the frame of what rides on it: mean turn, median place of all frames."""
-    spots, turns = (rows[nearest] for rows in made.human.sites(made.motion, [segment])[segment])
+def _shape_on(made: Fit, name: str, stream: Stream, nearest: Int[np.ndarray, "frames"]) -> Shape:
+    """A part's surface in the frame of what rides on it: mean turn, median place of all frames."""
+    surface = segment_surface(made.human.measures, (TOUCHED | HANDS)[name], name)
+    spots, turns = (rows[nearest] for rows in made.human.sites(made.motion, [name])[name])
     known = ~stream.lost & ~_lost(made)[nearest]
     worn = geometry.transforms(stream.positions[known], stream.orientations[known])
     relative = worn.inv() * geometry.transforms(spots[known], turns[known])
     middle: Float[np.ndarray, "3"] = np.median(relative.translation, axis=0)
-    return RigidTransform.from_components(middle, relative.rotation.mean())
+    return moved(surface, RigidTransform.from_components(middle, relative.rotation.mean()))
 
 
 def _lost(made: Fit) -> Bool[np.ndarray, "frames"]:
@@ -325,7 +332,3 @@ def _lost(made: Fit) -> Bool[np.ndarray, "frames"]:
     if not made.bridged:
         return np.zeros(len(made.times), dtype=bool)
     return np.asarray(np.all([*made.bridged.values()], axis=0))
-
-
-def _moved(shape: Shape, pose: RigidTransform) -> Shape:
-    return Shape(pose.apply(shape.vertices), np.array(shape.faces), description=shape.description)

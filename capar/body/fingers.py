@@ -1,78 +1,20 @@
-"""Fingers: how far hands are closed, by recorded joints or round a given width."""
+"""How far hands are closed, by the recorded joints of their fingers."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
 
-from capar.body.human import Human
+from capar.body.human import ROOT_SIZE, Human
 from capar.body.joint_fitting import RIGID_M
 from capar.model import geometry
-from capar.model.errors import CaparError
 from extractors.readers.drafting.contents import Points
 from extractors.readers.names import SIDES, BodyName, without_side
 
-OPEN = {"knuckle_flexion": 0.0, "finger_flexion": 0.0, "thumb_opposition": 0.0}
-"""Angles of an open hand [rad]."""
-
-FIST = {"knuckle_flexion": 1.4, "finger_flexion": 1.6, "thumb_opposition": 1.0}
-"""Angles of a closed hand [rad] (estimate)."""
-
-
-class GraspError(CaparError):
-    """A width that a hand cannot close round."""
-
-
-def grasp(human: Human, side: str, width_m: float | None) -> dict[str, float]:
-    """Angles of one hand's hinges [rad].
-
-    Args:
-        human: Whose hand.
-        side: ``right`` or ``left``.
-        width_m: What lies between finger and thumb tips [m]; None opens the hand.
-
-    Raises:
-        GraspError: The hand is too small for that width, or too large.
-    """
-    if width_m is None:
-        return _angles(side, 0.0)
-    grid = np.linspace(0.0, 1.0, 201)
-    widths = _apertures(human, side, grid)
-    closing = int(np.argmin(widths)) + 1
-    if not widths[:closing].min() <= width_m <= widths[0]:
-        raise GraspError(
-            f"no grasp {width_m * 1000:.0f} mm wide; this hand closes round "
-            f"{widths.min() * 1000:.0f} to {widths[0] * 1000:.0f} mm"
-        )
-    share = np.interp(width_m, widths[:closing][::-1], grid[:closing][::-1])
-    return _angles(side, float(share))
-
-
-def _angles(side: str, share: float) -> dict[str, float]:
-    return {f"{side}_{n}": (1.0 - share) * OPEN[n] + share * FIST[n] for n in OPEN}
-
-
-def _apertures(
-    human: Human, side: str, shares: Float[np.ndarray, "shares"]
-) -> Float[np.ndarray, "shares"]:
-    """Distance between finger tip and thumb tip of a hand so far closed [m]."""
-    postures = np.array([human.posture(_angles(side, float(share))) for share in shares])
-    tips = (f"{side}_fingertip", f"{side}_thumb_tip")
-    places = human.sites(postures, tips)
-    return np.array(
-        [
-            np.linalg.norm(finger - thumb)
-            for finger, thumb in zip(places[tips[0]][0], places[tips[1]][0], strict=True)
-        ]
-    )
-
-
-FINGERS = ("index", "middle", "ring", "pinky", "little")
+FINGERS, THUMB = ("index", "middle", "ring", "pinky", "little"), "thumb"
 """Words by which names tell whose joint a point is; those of one finger are in order of name."""
 
-THUMB = "thumb"
 PLACES = ("hand", "fingers", "thumb", "thumb_tip", "index_knuckle", "fifth_knuckle")
 """What names of joints of fingers are known as."""
 
@@ -87,28 +29,17 @@ THUMB_AHEAD = float(np.arctan2(0.15, 0.45))
 """Where the open thumb points about the hand's long axis, from forwards to the palm [rad]."""
 
 
-@dataclass(frozen=True, eq=False)
-class Closing:
-    """How far the fingers of one hand are closed."""
-
-    names: tuple[str, ...]
-    """The recorded points by which."""
-
-    angles: Mapping[str, Float[np.ndarray, "frames"]]
-    """By hinge [rad], within its range."""
-
-
-def closings(
+def closed_hands(
     human: Human,
     motion: Float[np.ndarray, "frames posture"],
     points: Points,
     names: Mapping[str, BodyName],
-) -> dict[str, Closing]:
-    """How far hands are closed, by the side; those without recorded fingers are left out.
+) -> Float[np.ndarray, "frames posture"]:
+    """The same motion with hands closed as their fingers are recorded; without these, as they are.
 
     The fingers of this body bend as one, by the median of the recorded ones: at the knuckles by the
     direction of their first bone in the hand, at the middle joints by that of the second against
-    it. Fingers of which only knuckles are recorded tell nothing.
+    it. Fingers of which only knuckles are recorded do not count.
 
     Args:
         human: The body.
@@ -116,44 +47,35 @@ def closings(
         points: By name, in the world [m]; NaN where lost.
         names: What the names mean.
     """
-    out = {}
+    out = motion.copy()
     for side in SIDES:
         wrist = next((n for n, name in names.items() if name.place == f"{side}_hand"), None)
         if wrist is None:
             continue
         chains = _chains(points, names, side, points[wrist])
-        fingers = [chain for word, chain in chains.items() if word != THUMB]
         turns = geometry.rotations(human.sites(motion, [f"{side}_hand"])[f"{side}_hand"][1]).inv()
         flip = np.array([1.0, 1.0 if side == "right" else -1.0, 1.0])
         bones = [
             [flip * turns.apply(points[end] - points[start]) for start, end in pairwise(chain)]
-            for chain in fingers
+            for finger, chain in chains.items()
+            if finger != THUMB
         ]
         if not bones:
             continue
-        knuckles = _median(_flexion(chain[0]) for chain in bones)
-        angles = {f"{side}_knuckle_flexion": knuckles}
+        angles = {"knuckle_flexion": _median(_flexion(chain[0]) for chain in bones)}
         further = [_flexion(chain[1]) - _flexion(chain[0]) for chain in bones if len(chain) > 1]
         if further:
-            angles[f"{side}_finger_flexion"] = _median(further)
+            angles["finger_flexion"] = _median(further)
         if THUMB in chains:
             first, *_, last = chains[THUMB]
             way = flip * turns.apply(points[last] - points[first])
-            angles[f"{side}_thumb_opposition"] = np.arctan2(way[:, 1], way[:, 0]) - THUMB_AHEAD
-        known = {name: _everywhere(human, name, angle) for name, angle in angles.items()}
-        used = tuple(name for chain in chains.values() for name in chain)
-        out[side] = Closing(used, {name: angle for name, angle in known.items() if angle.size})
-    return out
-
-
-def with_closings(
-    human: Human, motion: Float[np.ndarray, "frames posture"], hands: Mapping[str, Closing]
-) -> Float[np.ndarray, "frames posture"]:
-    """The same motion with hands so far closed."""
-    out = motion.copy()
-    for closing in hands.values():
-        for hinge, angle in closing.angles.items():
-            out[:, human.index(hinge)] = angle
+            angles["thumb_opposition"] = np.arctan2(way[:, 1], way[:, 0]) - THUMB_AHEAD
+        for hinge, angle in angles.items():
+            seen = np.flatnonzero(np.isfinite(angle))
+            if len(seen):
+                index = human.index(f"{side}_{hinge}")
+                everywhere = np.interp(np.arange(len(angle)), seen, angle[seen])
+                out[:, index] = np.clip(everywhere, *human.ranges[index - ROOT_SIZE])
     return out
 
 
@@ -165,10 +87,18 @@ def _chains(
     def away(name: str) -> Float[np.ndarray, "frames"]:
         return np.asarray(np.linalg.norm(points[name] - wrist, axis=1))
 
+    hand = [
+        n
+        for n, name in names.items()
+        if without_side(name.place) in PLACES and name.side in (side, "none")
+    ]
     out = {}
     for word in (*FINGERS, THUMB):
-        chain = sorted(n for n, name in names.items() if _on_finger(n, name, word, side))
-        chain = [name for name in chain if np.nanmax(away(name)) < REACH_M]
+        chain = [
+            name
+            for name in sorted(hand)
+            if word in name.lower() and np.nanmax(away(name)) < REACH_M
+        ]
         if len(chain) > 1 and np.nanstd(away(chain[0])) < RIGID_M:
             out[word] = chain
     begin = {word: float(np.nanmedian(away(chain[0]))) for word, chain in out.items()}
@@ -178,12 +108,6 @@ def _chains(
     return out
 
 
-def _on_finger(name: str, known: BodyName, word: str, side: str) -> bool:
-    """Whether a name is that of a point on a finger, or on the thumb, of a side or of none."""
-    on = without_side(known.place) in PLACES and known.side in (side, "none")
-    return on and word in name.lower()
-
-
 def _flexion(bone: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
     """The angle of a finger's bone to the straight hand, towards the palm [rad]."""
     return np.asarray(np.arctan2(bone[:, 1], -bone[:, 2]))
@@ -191,14 +115,3 @@ def _flexion(bone: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]
 
 def _median(angles: Iterable[Float[np.ndarray, "frames"]]) -> Float[np.ndarray, "frames"]:
     return np.asarray(np.median(np.stack(list(angles)), axis=0))
-
-
-def _everywhere(
-    human: Human, hinge: str, angle: Float[np.ndarray, "frames"]
-) -> Float[np.ndarray, "frames"]:
-    """An angle within its hinge's range, also where points were lost; empty if never seen."""
-    seen = np.flatnonzero(np.isfinite(angle))
-    if not len(seen):
-        return np.zeros(0)
-    low, high = human.ranges[human.joints.index(hinge)]
-    return np.asarray(np.clip(np.interp(np.arange(len(angle)), seen, angle[seen]), low, high))

@@ -11,12 +11,12 @@ from jaxtyping import Bool, Float
 from scipy.spatial.transform import Rotation
 
 from capar.body.anthropometry import Measures, is_right, mirrored, table
-from capar.body.shapes import Form, forms, palm_centre
-from capar.body.skeleton import Inertia, Segment, eyes_between, inertias, skeleton
+from capar.body.shapes import forms, palm_centre
+from capar.body.skeleton import Segment, eyes_between, inertias, skeleton
 from capar.model.errors import CaparError, UnknownNameError
 
-ROOT = "root"
-"""Name of the free joint."""
+ROOT, ROOT_SIZE = "root", 7
+"""Name of the free joint, and numbers of a posture that place the pelvis: x y z [m] and w x y z."""
 
 ARMATURE = 0.01
 """Added inertia of a hinge [kg m2], for simulations that step the model."""
@@ -40,15 +40,50 @@ def body_spec(measures: Measures, *, prefix: str = "") -> mujoco.MjSpec:
     spec.compiler.degree = False
     segments = skeleton(measures)
     weights = inertias(measures, segments)
-    bodies: dict[str, Any] = {}
+    bodies: dict[str, Any] = {"": spec.worldbody}
     for name, segment in segments.items():
-        bodies[name] = _add_segment(spec, bodies, segment, segments, weights[name], prefix)
+        start = segments[segment.parent].origin if segment.parent else np.zeros(3)
+        body = bodies[segment.parent].add_body(name=prefix + name, pos=segment.origin - start)
+        body.explicitinertial = True
+        weight = weights[name]
+        body.mass, body.ipos, body.inertia = weight.mass, weight.centre, weight.moments
+        if not segment.parent:
+            body.add_freejoint(name=prefix + ROOT)
+        bodies[name] = body
     for row in joint_rows(measures):
-        _add_hinge(bodies[row["body"]], row, prefix)
+        bodies[row["body"]].add_joint(
+            name=prefix + row["name"],
+            type=mujoco.mjtJoint.mjJNT_HINGE,
+            axis=np.array(row["axis"], dtype=float),
+            limited=mujoco.mjtLimited.mjLIMITED_TRUE,
+            range=row["range"],
+            armature=ARMATURE,
+        )
     for row in site_rows():
-        _add_site(bodies[row["body"]], row, measures, segments[row["body"]], prefix)
+        base = _site_base(row, measures, segments[row["body"]])
+        bodies[row["body"]].add_site(
+            name=prefix + row["name"],
+            pos=base + np.array(row["offset"]) * measures["stature"],
+            quat=_turn(row.get("axes")).as_quat(scalar_first=True),
+            size=[0.008, 0.0, 0.0],
+            group=4,
+        )
     for number, form in enumerate(forms(measures, segments)):
-        _add_form(bodies[form.body], form, f"{prefix}{form.body}_{number}")
+        turn = Rotation.identity()
+        if form.kind == "capsule":
+            upwards = np.array([0.0, 0.0, 1.0])
+            turn, _ = Rotation.align_vectors(form.axis / np.linalg.norm(form.axis), upwards)
+        bodies[form.body].add_geom(
+            name=f"{prefix}{form.body}_{number}",
+            type=_KINDS[form.kind],
+            pos=form.centre,
+            quat=turn.as_quat(scalar_first=True),
+            size=form.half,
+            rgba=table("shapes")["colours"][form.colour],
+            mass=0.0,
+            contype=0,
+            conaffinity=0,
+        )
     return spec
 
 
@@ -61,74 +96,22 @@ def joint_rows(measures: Measures) -> list[dict[str, Any]]:
         one = {**row, "range": (1.0 - share) * young + share * grown}
         out.append(one)
         if is_right(row["body"]):
-            out.append(_mirror_hinge(one))
+            x, y, z = row["axis"]
+            names = {key: mirrored(row[key]) for key in ("body", "name")}
+            out.append({**one, **names, "axis": [-x, y, -z]})
     return out
 
 
 def site_rows() -> list[dict[str, Any]]:
     """Every site, those of the left side mirrored."""
     right = [*table("sites")["site"], *table("landmarks")["site"]]
-    return [*right, *(_mirror_site(row) for row in right if is_right(row["name"]))]
-
-
-def sensor_sites() -> tuple[str, ...]:
-    """The sites of the thesis's eleven body sensors (thesis 5.1)."""
-    return tuple(row["name"] for row in site_rows() if row.get("sensor"))
-
-
-def _mirror_hinge(row: Mapping[str, Any]) -> dict[str, Any]:
-    x, y, z = row["axis"]
-    names = {key: mirrored(row[key]) for key in ("body", "name")}
-    return {**row, **names, "axis": [-x, y, -z]}
-
-
-def _mirror_site(row: Mapping[str, Any]) -> dict[str, Any]:
-    flip = np.array([1.0, -1.0, 1.0])
-    axes = {key: np.array(axis) * flip for key, axis in row.get("axes", {}).items()}
-    names = {"name": mirrored(row["name"]), "body": mirrored(row["body"])}
-    return {**row, **names, "offset": np.array(row["offset"]) * flip, "axes": axes}
-
-
-def _add_segment(
-    spec: mujoco.MjSpec,
-    bodies: Mapping[str, Any],
-    segment: Segment,
-    segments: Mapping[str, Segment],
-    weight: Inertia,
-    prefix: str,
-) -> Any:
-    parent = bodies[segment.parent] if segment.parent else spec.worldbody
-    start = segments[segment.parent].origin if segment.parent else np.zeros(3)
-    body = parent.add_body(name=prefix + segment.name, pos=segment.origin - start)
-    body.explicitinertial = True
-    body.mass, body.ipos, body.inertia = weight.mass, weight.centre, weight.moments
-    if not segment.parent:
-        body.add_freejoint(name=prefix + ROOT)
-    return body
-
-
-def _add_hinge(body: Any, row: Mapping[str, Any], prefix: str) -> None:
-    body.add_joint(
-        name=prefix + row["name"],
-        type=mujoco.mjtJoint.mjJNT_HINGE,
-        axis=np.array(row["axis"], dtype=float),
-        limited=mujoco.mjtLimited.mjLIMITED_TRUE,
-        range=row["range"],
-        armature=ARMATURE,
-    )
-
-
-def _add_site(
-    body: Any, row: Mapping[str, Any], m: Measures, segment: Segment, prefix: str
-) -> None:
-    place = _site_base(row, m, segment) + np.array(row["offset"]) * m["stature"]
-    body.add_site(
-        name=prefix + row["name"],
-        pos=place,
-        quat=_turn(row.get("axes")).as_quat(scalar_first=True),
-        size=[0.008, 0.0, 0.0],
-        group=4,
-    )
+    flip, out = np.array([1.0, -1.0, 1.0]), list(right)
+    for row in right:
+        if is_right(row["name"]):
+            axes = {key: np.array(axis) * flip for key, axis in row.get("axes", {}).items()}
+            names = {key: mirrored(row[key]) for key in ("name", "body")}
+            out.append({**row, **names, "offset": np.array(row["offset"]) * flip, "axes": axes})
+    return out
 
 
 def _site_base(row: Mapping[str, Any], m: Measures, segment: Segment) -> Float[np.ndarray, "3"]:
@@ -146,28 +129,6 @@ def _turn(axes: Mapping[str, Any] | None) -> Rotation:
         return Rotation.identity()
     x, z = np.array(axes["x"], dtype=float), np.array(axes["z"], dtype=float)
     return Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=1))
-
-
-def _add_form(body: Any, form: Form, name: str) -> None:
-    upwards = np.array([0.0, 0.0, 1.0])
-    turn = Rotation.identity()
-    if form.kind == "capsule":
-        turn, _ = Rotation.align_vectors(form.axis / np.linalg.norm(form.axis), upwards)
-    body.add_geom(
-        name=name,
-        type=_KINDS[form.kind],
-        pos=form.centre,
-        quat=turn.as_quat(scalar_first=True),
-        size=form.half,
-        rgba=table("shapes")["colours"][form.colour],
-        mass=0.0,
-        contype=0,
-        conaffinity=0,
-    )
-
-
-ROOT_SIZE = 7
-"""Numbers of a posture that place the pelvis: x y z [m] and w x y z."""
 
 
 class PostureError(CaparError):
@@ -229,18 +190,13 @@ class Human:
         out[3:7] = [np.cos(heading / 2), 0.0, 0.0, np.sin(heading / 2)]
         for joint, angle in (angles or {}).items():
             out[self.index(joint)] = angle
-        self._check(out)
-        return out
-
-    def _check(self, posture: Float[np.ndarray, "posture"]) -> None:
-        out = self.outside(posture[None])[0]
-        for number in np.flatnonzero(out):
+        for number in np.flatnonzero(self.outside(out[None])[0]):
             low, high = np.degrees(self.ranges[number])
-            angle = np.degrees(posture[ROOT_SIZE + number])
             raise PostureError(
-                f"{self.joints[number]} at {angle:.1f} degrees; "
+                f"{self.joints[number]} at {np.degrees(out[ROOT_SIZE + number]):.1f} degrees; "
                 f"it goes from {low:.0f} to {high:.0f}"
             )
+        return out
 
     def outside(
         self, motion: Float[np.ndarray, "frames posture"], *, margin: float = 1e-6
@@ -258,7 +214,7 @@ class Human:
         Raises:
             UnknownNameError: The body has no such site or segment.
         """
-        getters = {name: self._getter(name) for name in names}
+        getters = {name: self.frame(name) for name in names}
         data = mujoco.MjData(self.model)
         places = {name: np.empty((len(motion), 3)) for name in getters}
         turns = {name: np.empty((len(motion), 4)) for name in getters}
@@ -284,7 +240,12 @@ class Human:
         mujoco.mj_comPos(self.model, data)
         return np.array(data.subtree_com[0])
 
-    def _getter(self, name: str) -> tuple[str, int]:
+    def frame(self, name: str) -> tuple[str, int]:
+        """Whether a place on the body is a ``site`` or a segment (``body``), and its number.
+
+        Raises:
+            UnknownNameError: The body has no such site or segment.
+        """
         for kind, what in (("site", mujoco.mjtObj.mjOBJ_SITE), ("body", mujoco.mjtObj.mjOBJ_BODY)):
             number = mujoco.mj_name2id(self.model, what, name)
             if number >= 0:

@@ -13,11 +13,28 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
 from capar.body.shapes import segment_surface
-from capar.model.errors import UnknownNameError
 from extractors.readers.names import SIDES, parts, without_side
 
 SHORTEST_RAD = 1e-3
 """A solver whose steps have become shorter has found what there is to find [rad]."""
+
+
+FLAT_M = 0.02
+"""A foot stands flat while each of its points is no higher above its own lowest place [m]."""
+
+LOWEST_SHARE = 0.05
+"""Share of the frames of which the highest is taken for a point's lowest place [1]."""
+
+SOLE_M = 0.01
+"""What of a foot is no higher than this above its lowest place bears weight [m] (estimate)."""
+
+MARGIN_M = 0.015
+"""How far inside the edge of the base of support the centre of mass is kept [m] (estimate)."""
+
+EDGE_COST = 100.0
+"""Weight of a metre of the centre of mass beyond that margin."""
+
+Points = Mapping[str, Float[np.ndarray, "frames 3"]]
 
 
 class Solver:
@@ -95,22 +112,22 @@ class PointTask(mink.Task):
     forty markers that is ten times as fast.
     """
 
-    def __init__(self, model: mujoco.MjModel, places: Sequence[str], costs: Sequence[float]):
+    def __init__(self, human: Human, places: Sequence[str], costs: Sequence[float]) -> None:
         """Set up the task.
 
         Args:
-            model: The body's.
+            human: The body.
             places: Sites or segments.
             costs: Weight of a metre of each.
 
         Raises:
             UnknownNameError: The body has no such place.
         """
-        self._frames = [_frame(model, place) for place in places]
+        self._frames = [human.frame(place) for place in places]
         self._rows = np.repeat(np.asarray(costs, dtype=float), 3)
         super().__init__(cost=self._rows)
         self._targets = np.zeros((len(places), 3))
-        self._jacobian = np.empty((3 * len(places), model.nv))
+        self._jacobian = np.empty((3 * len(places), human.model.nv))
 
     def aim(self, targets: Float[np.ndarray, "places 3"]) -> None:
         """Set where each place is drawn to [m]; one that is NaN is let go."""
@@ -121,37 +138,17 @@ class PointTask(mink.Task):
     def compute_error(self, configuration: mink.Configuration) -> Float[np.ndarray, "rows"]:
         """Where each place is, less where it is drawn to [m]."""
         data = configuration.data
-        now = [(data.site_xpos if site else data.xpos)[number] for site, number in self._frames]
+        spots = {"site": data.site_xpos, "body": data.xpos}
+        now = [spots[kind][number] for kind, number in self._frames]
         return np.asarray((np.array(now) - self._targets).reshape(-1))
 
     def compute_jacobian(self, configuration: mink.Configuration) -> Float[np.ndarray, "rows dofs"]:
         """How each place moves with the joints."""
-        for row, (site, number) in enumerate(self._frames):
-            place = mujoco.mj_jacSite if site else mujoco.mj_jacBody
+        for row, (kind, number) in enumerate(self._frames):
+            fill = mujoco.mj_jacSite if kind == "site" else mujoco.mj_jacBody
             part = self._jacobian[3 * row : 3 * row + 3]
-            place(configuration.model, configuration.data, part, None, number)
+            fill(configuration.model, configuration.data, part, None, number)
         return self._jacobian
-
-
-def _frame(model: mujoco.MjModel, place: str) -> tuple[bool, int]:
-    """Whether a place is a site, and its number."""
-    site = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, place)
-    if site >= 0:
-        return True, int(site)
-    body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, place)
-    if body < 0:
-        known = [model.body(index).name for index in range(1, model.nbody)]
-        raise UnknownNameError("place on the body", place, known)
-    return False, int(body)
-
-
-FLAT_M = 0.02
-"""A foot stands flat while each of its points is no higher above its own lowest place [m]."""
-
-LOWEST_SHARE = 0.05
-"""Share of the frames of which the highest is taken for a point's lowest place [1]."""
-
-Points = Mapping[str, Float[np.ndarray, "frames 3"]]
 
 
 def standing_flat(points: Points, places: Mapping[str, str]) -> dict[str, Bool[np.ndarray, "f"]]:
@@ -166,22 +163,19 @@ def standing_flat(points: Points, places: Mapping[str, str]) -> dict[str, Bool[n
     """
     out = {}
     for side in SIDES:
-        own = [name for name, place in places.items() if name in points and _on_foot(place, side)]
-        rises = [_rise(points[name][:, 2]) for name in own if not np.isnan(points[name]).all()]
+        heights = [
+            points[name][:, 2]
+            for name, place in places.items()
+            if name in points and not np.isnan(points[name]).all()
+            if place.startswith(side) and parts().get(without_side(place)) == "foot"
+        ]
+        rises = [each - np.nanquantile(each, LOWEST_SHARE) for each in heights]
         if rises:
             stack = np.stack(rises)
             seen = ~np.isnan(stack)
             flat = np.where(seen, stack <= FLAT_M, True).all(axis=0)
             out[side] = flat & (seen.sum(axis=0) > len(rises) / 2)
     return out
-
-
-def _on_foot(place: str, side: str) -> bool:
-    return place.startswith(side) and parts().get(without_side(place)) == "foot"
-
-
-def _rise(heights: Float[np.ndarray, "frames"]) -> Float[np.ndarray, "frames"]:
-    return np.asarray(heights - np.nanquantile(heights, LOWEST_SHARE))
 
 
 class GroundTask(mink.Task):
@@ -217,15 +211,18 @@ class GroundTask(mink.Task):
 
 
 class DirectionTask(mink.Task):
-    """Points a segment's own axis in a direction, however the segment is turned about it."""
+    """Points a segment's own axis in a direction, however the segment is turned about it.
 
-    def __init__(self, segment: str, axis: Sequence[float], cost: float) -> None:
+    Unless told otherwise it keeps the z axis upright, whichever way the segment faces.
+    """
+
+    def __init__(self, segment: str, cost: float, axis: Sequence[float] = (0.0, 0.0, 1.0)) -> None:
         """Set up the task, which aims upwards.
 
         Args:
             segment: Name of the body.
-            axis: In the segment's frame [1].
             cost: Weight of a radian.
+            axis: In the segment's frame [1].
         """
         super().__init__(cost=np.full(2, cost))
         self.segment = segment
@@ -255,29 +252,6 @@ class DirectionTask(mink.Task):
         """The direction in the segment's frame [1]."""
         turn = configuration.data.body(self.segment).xmat.reshape(3, 3)
         return np.asarray(turn.T @ self._direction)
-
-
-class UprightTask(DirectionTask):
-    """Keeps a segment's own z axis upright, whichever way it faces."""
-
-    def __init__(self, segment: str, cost: float) -> None:
-        """Set up the task.
-
-        Args:
-            segment: Name of the body.
-            cost: Weight of a radian.
-        """
-        super().__init__(segment, (0.0, 0.0, 1.0), cost)
-
-
-SOLE_M = 0.01
-"""What of a foot is no higher than this above its lowest place bears weight [m] (estimate)."""
-
-MARGIN_M = 0.015
-"""How far inside the edge of the base of support the centre of mass is kept [m] (estimate)."""
-
-EDGE_COST = 100.0
-"""Weight of a metre of the centre of mass beyond that margin."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,9 @@
-"""From joints and key points to the body's motion, heads and toes where the file has them."""
+"""From joints and key points to the body's motion, heads and toes where the file has them.
+
+Three points or more of a hand or the head turn it fully. Where they sit on the body is not found
+from its postures, which they are to turn, but from their own shape, laid onto the same points of
+the body.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -11,24 +16,23 @@ from scipy.spatial.transform import Rotation
 from capar.body.anthropometry import Measures
 from capar.body.human import Human
 from capar.body.inverse_kinematics import standing_flat
-from capar.body.marker_fitting import file_convention, local_places, sample_frames, with_markers
 from capar.body.point_fitting import (
     Guidance,
-    SkeletonFit,
-    fit_skeleton,
+    PointFit,
+    fit_points,
+    local_places,
     measures_from_points,
+    sample_frames,
     with_ankles,
     with_head,
+    with_markers,
 )
 from capar.model import geometry
 from extractors.readers.drafting.contents import Points
 from extractors.readers.names import SIDES, BodyName, Convention, parts, without_side
 
-FACE = "face"
-"""Name of a point that is put before the head, in the direction in which the face looks."""
-
-FACE_M = 0.2
-"""How far before the head's joint it is [m]."""
+FACE, FACE_M = "face", 0.2
+"""Name of a point that is put before the head where the face looks, and how far before [m]."""
 
 RIGID_M = 0.01
 """Points are rigid together if they stay so near to a common shape (root mean square) [m]."""
@@ -41,117 +45,19 @@ JOINT_WEIGHT = 0.1
 """Weight of the head's joint, its top and the thumb against eyes, face and knuckles [1]: skeletons
 have them at different places."""
 
-HAND = ("hand", "index_knuckle", "fingers", "fifth_knuckle", "thumb_tip")
-HEAD = ("head", "head_top", "right_eye", "left_eye", FACE)
+RIGID_PARTS = {
+    **{
+        f"{side}_hand": tuple(
+            f"{side}_{place}"
+            for place in ("hand", "index_knuckle", "fingers", "fifth_knuckle", "thumb_tip")
+        )
+        for side in SIDES
+    },
+    "head": ("head", "head_top", "right_eye", "left_eye", FACE),
+}
+"""By segment, the places whose points are rigid with it."""
 
-
-def rigid_places(
-    human: Human,
-    points: Points,
-    places: Mapping[str, str],
-    faces: Float[np.ndarray, "frames 3"] | None = None,
-) -> dict[str, Float[np.ndarray, "3"]]:
-    """Where points of hands and head are in the frame of ``part_of`` their place [m], by name.
-
-    A hand hangs on its wrist, a head on its eyes, or on its joint where eyes are not seen.
-
-    Args:
-        human: The body.
-        points: By name, in the world [m]; NaN where lost.
-        places: The place on the body of each.
-        faces: Directions in which the face looks [1], where they are known.
-    """
-    out: dict[str, Float[np.ndarray, "3"]] = {}
-    heads = [name for name, place in places.items() if place == "head"]
-    if faces is not None and heads:
-        points = {**points, FACE: points[heads[0]] + FACE_M * faces}
-        places = {**places, FACE: FACE}
-    for segment, own in _parts().items():
-        names = [name for name, place in places.items() if place in own]
-        told = len(names) >= LEAST_POINTS or FACE in (places[name] for name in names)
-        shape = rigid_shape([points[name] for name in names]) if told else None
-        if shape is not None:
-            usual = _usual(human, segment, [places[name] for name in names])
-            out |= dict(zip(names, _laid(shape, usual, [places[n] for n in names]), strict=True))
-    return {name: spot for name, spot in out.items() if name in places and name != FACE}
-
-
-def part_of(place: str) -> str:
-    """The segment with which a place is rigid: a hand, the head, or what the place is on."""
-    return next((segment for segment, own in _parts().items() if place in own), place)
-
-
-def _parts() -> dict[str, tuple[str, ...]]:
-    """By segment, the places whose points are rigid with it."""
-    hands = {f"{side}_hand": tuple(f"{side}_{place}" for place in HAND) for side in SIDES}
-    return {**hands, "head": HEAD}
-
-
-def rigid_shape(
-    points: Sequence[Float[np.ndarray, "frames 3"]],
-) -> Float[np.ndarray, "points 3"] | None:
-    """The shape that points keep [m], their middle at zero; None if they are not rigid."""
-    stack = np.stack(points, axis=1)
-    stack = stack[np.isfinite(stack).all(axis=(1, 2))]
-    if not len(stack):
-        return None
-    centred = stack - stack.mean(axis=1, keepdims=True)
-    shape = centred[0]
-    with catch_warnings(action="ignore", category=UserWarning):  # two points leave a turn open
-        turns = [Rotation.align_vectors(shape, frame)[0] for frame in centred]
-    turned = np.stack([turn.apply(frame) for turn, frame in zip(turns, centred, strict=True)])
-    rest = turned - turned.mean(axis=0)
-    rigid = np.sqrt((rest**2).sum(axis=2).mean()) < RIGID_M
-    return np.asarray(turned.mean(axis=0)) if rigid else None
-
-
-def _usual(human: Human, segment: str, places: Sequence[str]) -> Float[np.ndarray, "points 3"]:
-    """Where the body itself has places, in the frame of their segment [m]."""
-    known = {place for place in places if place != FACE} | {segment}
-    where = human.sites(human.posture()[None], known)
-    frame = geometry.transforms(where[segment][0][0], where[segment][1][0])
-    ahead = {FACE: frame.apply([FACE_M, 0.0, 0.0])}
-    world = [ahead[place] if place in ahead else where[place][0][0] for place in places]
-    return np.asarray(frame.inv().apply(np.array(world)))
-
-
-def _laid(
-    shape: Float[np.ndarray, "points 3"],
-    usual: Float[np.ndarray, "points 3"],
-    places: Sequence[str],
-) -> Float[np.ndarray, "points 3"]:
-    """A shape turned as the body has its places, and moved to where it hangs."""
-    held = [place.endswith("_eye") for place in places]
-    if not any(held):
-        held = [place in {"head", "right_hand", "left_hand"} for place in places]
-    weights = np.array([JOINT_WEIGHT if _doubtful(place) else 1.0 for place in places])
-    middle = shape[held].mean(axis=0)
-    turn = _turn(shape - middle, usual - usual[held].mean(axis=0), places, weights)
-    return np.asarray(turn.apply(shape - middle) + usual[held].mean(axis=0))
-
-
-def _turn(
-    shape: Float[np.ndarray, "points 3"],
-    usual: Float[np.ndarray, "points 3"],
-    places: Sequence[str],
-    weights: Float[np.ndarray, "points"],
-) -> Rotation:
-    """The turn that takes a shape to the usual one; of the face only its direction counts."""
-    if FACE in places:
-        joint, face = list(places).index("head"), list(places).index(FACE)
-        shape, usual = shape.copy(), usual.copy()
-        shape[face] -= shape[joint]
-        usual[face] -= usual[joint]
-    with catch_warnings(action="ignore", category=UserWarning):  # a face alone leaves its roll open
-        turn, _ = Rotation.align_vectors(usual, shape, weights=weights)
-    return turn
-
-
-def _doubtful(place: str) -> bool:
-    return place in {"head", "head_top"} or place.endswith("thumb_tip")
-
-
-LIMB_JOINTS = {"upper_arm", "forearm", "hand", "thigh", "shank", "foot"}
+SHARED = {"upper_arm", "forearm", "hand", "thigh", "shank", "foot", "fingers", "thumb_tip"}
 """Joints that are at the same place in every skeleton."""
 
 WEIGHTS = {
@@ -161,14 +67,12 @@ WEIGHTS = {
 }  # fmt: skip
 """How much places on the hand count, and joints of the spine once their places are known [1]."""
 
-HEAD_BY_EYES = 0.3
-"""How much the head's joint counts where eyes are seen [1]."""
+HEAD_BY_EYES, EARLY_SHARE = 0.3, 0.1
+"""How much the head's joint counts where eyes are seen, and how much of their weight necks and
+heads have before it is known where on the body theirs are [1]."""
 
 SPINE_M = 0.05
 """How far from the axis of its segment a joint of the spine may be [m]."""
-
-EARLY_SHARE = 0.1
-"""How much of their weight necks and heads have before it is known where on the body theirs are."""
 
 ROUNDS = 3
 """Times that places are found anew from postures."""
@@ -183,7 +87,7 @@ def fit_joints(
     ground_m: float | None = None,
     stated: Mapping[str, str] | None = None,
     faces: Float[np.ndarray, "frames 3"] | None = None,
-) -> SkeletonFit:
+) -> PointFit:
     """Fit the body to joints or key points in a world whose z axis points up.
 
     Hands and heads of which three points are seen are turned as these are. Where skeletons have
@@ -204,8 +108,7 @@ def fit_joints(
     """
     places = _believed(points, convention.named(points), stated or {})
     known = Guidance(standing_flat(points, places), ground_m, faces)
-    told = replace(convention, points=places, whole_names=True)
-    measures = with_ankles(measures_from_points(points, told), points, places, known)
+    measures = with_ankles(measures_from_points(points, places), points, places, known)
     weights = {name: _weight(convention, place, places) for name, place in places.items()}
     names = {n: BodyName(n, place, exact=True, by=convention.title) for n, place in places.items()}
     frames = sample_frames(points, names)
@@ -213,16 +116,35 @@ def fit_joints(
     shaped = rigid_places(Human.of(measures), sampled, places, known.at(frames).faces)
     names |= {name: replace(names[name], place=part_of(places[name])) for name in shaped}
     early = {name: weight * _early(name, names, places) for name, weight in weights.items()}
-    differing = [n for n, name in names.items() if n not in shaped and _differs(name)]
-    names |= {n: replace(names[n], place=_rides_on(places[n])) for n in differing}
-    own = {name: names[name] for name in differing}
+    # Toes turn about their joint, which moves with the foot: on them it would turn them.
+    differing = {
+        n: replace(name, place=name.place.replace("_toes", "_foot"))
+        for n, name in names.items()
+        if n not in shaped and without_side(name.place) not in SHARED
+    }
+    names |= differing
     local: Local = shaped
     for _ in range(ROUNDS):
         first = _fit(sampled, measures, local, names, places, early, known.at(frames))
         settled = _settled(shaped, first, sampled, names, places)
         measures = with_head(measures, _eyes_higher_m(first, sampled, places))
-        local = {**settled, **_anatomical(local_places(first, sampled, own), places)}
+        local = {**settled, **_anatomical(local_places(first, sampled, differing), places)}
     return _fit(points, measures, local, names, places, weights, known)
+
+
+def _fit(
+    points: Points,
+    measures: Measures,
+    local: Local,
+    names: Mapping[str, BodyName],
+    places: Mapping[str, str],
+    weights: Mapping[str, float],
+    guidance: Guidance,
+) -> PointFit:
+    """The body fitted to points, some of which have places of their own on it."""
+    found = {name: f"marker_{name}" if name in local else places[name] for name in names}
+    by_place = {place: weights[name] for name, place in found.items()}
+    return fit_points(with_markers(measures, local, names), points, found, by_place, guidance)
 
 
 def _weight(convention: Convention, place: str, places: Mapping[str, str]) -> float:
@@ -259,23 +181,9 @@ def _early(name: str, names: Mapping[str, BodyName], places: Mapping[str, str]) 
     return EARLY_SHARE if place == "neck" or (place == "head" and not eyed) else 1.0
 
 
-def _differs(name: BodyName) -> bool:
-    """Whether skeletons have a joint at different places on its segment."""
-    return without_side(name.place) not in {*LIMB_JOINTS, "fingers", "thumb_tip"}
-
-
-def _rides_on(place: str) -> str:
-    """The segment with which a joint moves: that of the toes, about which they turn, is the foot's.
-
-    On the toes themselves it would turn them, of which nothing is recorded.
-    """
-    side, _, joint = place.partition("_")
-    return f"{side}_foot" if joint == "toes" else place
-
-
 def _settled(
     shaped: Local,
-    first: SkeletonFit,
+    first: PointFit,
     points: Points,
     names: Mapping[str, BodyName],
     places: Mapping[str, str],
@@ -289,7 +197,7 @@ def _settled(
     return {name: spot + moved if name in heads else spot for name, spot in shaped.items()}
 
 
-def _eyes_higher_m(made: SkeletonFit, points: Points, places: Mapping[str, str]) -> float:
+def _eyes_higher_m(made: PointFit, points: Points, places: Mapping[str, str]) -> float:
     """How much higher above the chest eyes are than the body has them [m]; 0 where unseen."""
     eyes = [name for name, place in places.items() if place.endswith("_eye")]
     if not eyes:
@@ -308,28 +216,100 @@ def _anatomical(local: Local, places: Mapping[str, str]) -> dict[str, Float[np.n
     """
     out = {}
     for name, spot in local.items():
-        place = without_side(places[name])
-        if place == "toes":
-            out[name] = spot * np.array([1.0, 0.0, 1.0])
-        elif parts().get(place) in {"trunk", "pelvis"}:
+        place, aside = without_side(places[name]), 1.0
+        if parts().get(place) in {"trunk", "pelvis"}:
             aside = max(float(np.linalg.norm(spot[:2])) / SPINE_M, 1.0)
-            out[name] = spot / np.array([aside, aside, 1.0])
-        else:
-            out[name] = spot
+        ahead = np.array([1.0, 0.0, 1.0]) if place == "toes" else 1.0
+        out[name] = ahead * spot / np.array([aside, aside, 1.0])
     return out
 
 
-def _fit(
+def rigid_places(
+    human: Human,
     points: Points,
-    measures: Measures,
-    local: Local,
-    names: Mapping[str, BodyName],
     places: Mapping[str, str],
-    weights: Mapping[str, float],
-    guidance: Guidance,
-) -> SkeletonFit:
-    """The body fitted to points, some of which have places of their own on it."""
-    found = {name: f"marker_{name}" if name in local else places[name] for name in names}
-    own = file_convention(found, {place: weights[name] for name, place in found.items()})
-    human = with_markers(measures, local, names)
-    return fit_skeleton(points, own, human=human, guidance=guidance)
+    faces: Float[np.ndarray, "frames 3"] | None = None,
+) -> dict[str, Float[np.ndarray, "3"]]:
+    """Where points of hands and head are in the frame of ``part_of`` their place [m], by name.
+
+    A hand hangs on its wrist, a head on its eyes, or on its joint where eyes are not seen.
+
+    Args:
+        human: The body.
+        points: By name, in the world [m]; NaN where lost.
+        places: The place on the body of each.
+        faces: Directions in which the face looks [1], where they are known.
+    """
+    out: dict[str, Float[np.ndarray, "3"]] = {}
+    heads = [name for name, place in places.items() if place == "head"]
+    if faces is not None and heads:
+        points = {**points, FACE: points[heads[0]] + FACE_M * faces}
+        places = {**places, FACE: FACE}
+    for segment, own in RIGID_PARTS.items():
+        names = [name for name, place in places.items() if place in own]
+        told = len(names) >= LEAST_POINTS or FACE in (places[name] for name in names)
+        shape = rigid_shape([points[name] for name in names]) if told else None
+        if shape is not None:
+            usual = _usual(human, segment, [places[name] for name in names])
+            out |= dict(zip(names, _laid(shape, usual, [places[n] for n in names]), strict=True))
+    return {name: spot for name, spot in out.items() if name in places and name != FACE}
+
+
+def part_of(place: str) -> str:
+    """The segment with which a place is rigid: a hand, the head, or what the place is on."""
+    return next((segment for segment, own in RIGID_PARTS.items() if place in own), place)
+
+
+def rigid_shape(
+    points: Sequence[Float[np.ndarray, "frames 3"]],
+) -> Float[np.ndarray, "points 3"] | None:
+    """The shape that points keep [m], their middle at zero; None if they are not rigid."""
+    stack = np.stack(points, axis=1)
+    stack = stack[np.isfinite(stack).all(axis=(1, 2))]
+    if not len(stack):
+        return None
+    centred = stack - stack.mean(axis=1, keepdims=True)
+    shape = centred[0]
+    with catch_warnings(action="ignore", category=UserWarning):  # two points leave a turn open
+        turns = [Rotation.align_vectors(shape, frame)[0] for frame in centred]
+    turned = np.stack([turn.apply(frame) for turn, frame in zip(turns, centred, strict=True)])
+    rest = turned - turned.mean(axis=0)
+    rigid = np.sqrt((rest**2).sum(axis=2).mean()) < RIGID_M
+    return np.asarray(turned.mean(axis=0)) if rigid else None
+
+
+def _usual(human: Human, segment: str, places: Sequence[str]) -> Float[np.ndarray, "points 3"]:
+    """Where the body itself has places, in the frame of their segment [m]."""
+    known = {place for place in places if place != FACE} | {segment}
+    where = human.sites(human.posture()[None], known)
+    frame = geometry.transforms(where[segment][0][0], where[segment][1][0])
+    ahead = {FACE: frame.apply([FACE_M, 0.0, 0.0])}
+    world = [ahead[place] if place in ahead else where[place][0][0] for place in places]
+    return np.asarray(frame.inv().apply(np.array(world)))
+
+
+def _laid(
+    shape: Float[np.ndarray, "points 3"],
+    usual: Float[np.ndarray, "points 3"],
+    places: Sequence[str],
+) -> Float[np.ndarray, "points 3"]:
+    """A shape turned as the body has its places, and moved to where it hangs.
+
+    Of the face only its direction counts.
+    """
+    held = [place.endswith("_eye") for place in places]
+    if not any(held):
+        held = [place in {"head", "right_hand", "left_hand"} for place in places]
+    weights = np.array([
+        JOINT_WEIGHT if place in {"head", "head_top"} or place.endswith("thumb_tip") else 1.0
+        for place in places
+    ])  # fmt: skip
+    middle, hangs = shape[held].mean(axis=0), usual[held].mean(axis=0)
+    own, other = shape - middle, usual - hangs
+    if FACE in places:
+        joint, face = list(places).index("head"), list(places).index(FACE)
+        own[face] -= own[joint]
+        other[face] -= other[joint]
+    with catch_warnings(action="ignore", category=UserWarning):  # a face alone leaves its roll open
+        turn, _ = Rotation.align_vectors(other, own, weights=weights)
+    return np.asarray(turn.apply(shape - middle) + hangs)

@@ -8,21 +8,10 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.anthropometry import Measures
 from capar.body.gaze import look_tasks, share_costs
 from capar.body.human import Human
 from capar.body.inverse_kinematics import BalanceLimit, BalanceTask, standing_support
-from capar.body.scenes import (
-    PITCHES,
-    ROLLS,
-    YAWS,
-    Scene,
-    SceneError,
-    Thing,
-    back_grip,
-    side_grip,
-    top_grip,
-)
+from capar.body.scenes import Scene, SceneError, grips
 from capar.body.scripts import (
     SIDES,
     Move,
@@ -34,50 +23,210 @@ from capar.body.scripts import (
     tossed,
     turned_about,
 )
-from capar.model.capture import TagType
 
-PALM_COST = (20.0, 4.0)
-"""Weights of a metre and of a radian at the palms."""
-
-FOOT_COST = 60.0
-BALANCE_COST = 2.0
-"""Weight of a metre of the centre of mass from above the feet."""
+PALM_COST, FOOT_COST, BALANCE_COST = (20.0, 4.0), 60.0, 2.0
+"""Weights of a metre and of a radian at the palms, of a metre and a radian at the feet, and of a
+metre of the centre of mass from above the feet."""
 
 RELAXED = {"elbow_flexion": 12.0, "shoulder_abduction": 6.0, "knee_flexion": 2.0}
 """How somebody stands at ease [degrees]."""
 
-LEAD_S = 0.2
-"""How long the gaze goes ahead of the hand [s] (Land & Hayhoe 2001: up to half a second)."""
+LEAD_S, SHIFT_S = 0.2, 0.3
+"""How long the gaze goes ahead of the hand (Land & Hayhoe 2001: up to half a second), and how long
+a shift of gaze takes, the head's share included [s]."""
 
-SHIFT_S = 0.3
-"""How long a shift of gaze takes, the head's share included [s]."""
-
-STANDOFF_M = 0.07
-"""How far beside the straight way a hand comes to a thing from outside [m]."""
+STANDOFF_M, RISE_M = 0.07, 0.13
+"""How far next to and above the straight path a hand comes to an object from outside [m]."""
 
 UP, OVER = 0.6, 0.75
 """Shares of a reach in which the hand rises, and in which it goes forward [1]."""
 
-RISE_M = 0.13
-"""How far above the straight way a hand goes to a thing [m]."""
+RELEASE_S, FOLLOW_S = 0.48, 0.12
+"""How long it takes after a drink until the head is free again, in the next phase, and how long a
+hand swings on that let go of what it throws [s]."""
 
-RELEASE_S = 0.48
-"""How long it takes after a drink until the head is free again, in the next phase [s]."""
+ITERATIONS, GRIP_ITERATIONS = 3, 20
+"""Of inverse kinematics for a frame, and for a grip that is tried."""
 
-SWINGS_S = 0.12
-"""How long a hand swings on that let go of what it throws [s]."""
+RATE_HZ = 103.3
+"""Of the thesis's tracker (thesis 3.1) [Hz]."""
 
-ITERATIONS = 3
+REACH_TOLERANCE_M, TOUCH_M = 0.003, 0.003
+"""A palm further than the one from where it is to be cannot reach it; one nearer than the other to
+its grip touches the object [m]."""
 
 
-@dataclass
-class Frame:
-    """One frame of a performance."""
+class PerformanceError(SceneError):
+    """Something that this body cannot do in this scene."""
 
-    posture: np.ndarray
-    things: dict[str, RigidTransform]
-    gaze: np.ndarray
-    slip: dict[str, float]
+
+@dataclass(frozen=True, eq=False)
+class Performance:
+    """What was done, to the last joint."""
+
+    human: Human
+    scene: Scene
+    script: Script
+    times: Float[np.ndarray, "frames"]
+    """[s]."""
+
+    motion: Float[np.ndarray, "frames posture"]
+    things: Mapping[str, RigidTransform]
+    """``T_world_thing`` of every object at every frame."""
+
+    phases: tuple[tuple[str, float, float], ...]
+    """Name, start and end of each [s]."""
+
+    gazes: Float[np.ndarray, "frames 3"]
+    """Point looked at [m]."""
+
+    looks: tuple[str, ...]
+    """What is looked at in each phase."""
+
+    slip_m: Mapping[str, Float[np.ndarray, "frames"]]
+    """By side, distance of a palm from where it is to be [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Role:
+    """Who does what, and from where."""
+
+    name: str
+    """Of the agent."""
+
+    human: Human
+    script: Script
+    """As many phases as everybody else's, of the same lengths."""
+
+    place: tuple[float, float] = (0.0, 0.0)
+    """Where the body stands [m]."""
+
+    heading: float = 0.0
+    """Which way it faces, from x towards y [rad]."""
+
+
+Frame = tuple[np.ndarray, dict[str, RigidTransform], np.ndarray, dict[str, float]]
+"""Posture, poses of objects, point looked at [m], and how far palms miss their goals [m]."""
+
+
+def perform(
+    human: Human,
+    scene: Scene,
+    script: Script,
+    *,
+    place: tuple[float, float] = (0.0, 0.0),
+    heading: float = 0.0,
+    rate_hz: float = RATE_HZ,
+) -> Performance:
+    """Let a body do a script in a scene.
+
+    Args:
+        human: Of any size.
+        scene: Any that its hands can reach.
+        script: What it does.
+        place: Where it stands [m].
+        heading: Which way it faces [rad].
+        rate_hz: Frames a second.
+
+    Raises:
+        PerformanceError: A hand cannot come where it is to be; the message says by how much.
+        UnknownNameError: The script names an object that is not there.
+    """
+    role = Role("performer", human, script, place, heading)
+    return perform_together(scene, [role], rate_hz=rate_hz)[role.name]
+
+
+def perform_together(
+    scene: Scene, roles: Sequence[Role], *, rate_hz: float
+) -> dict[str, Performance]:
+    """Let bodies do their scripts in one scene, where the objects are the same for all.
+
+    Args:
+        scene: With what all of them handle.
+        roles: Who does what; in a phase only one of them moves an object.
+        rate_hz: Frames a second.
+
+    Returns:
+        The performance of each, by the agent's name.
+
+    Raises:
+        PerformanceError: A hand cannot come where it is to be; the message says by how much.
+        UnknownNameError: A script names an object that is not there.
+    """
+    actors = [Actor(role.human, scene, role.place, role.heading) for role in roles]
+    _choose_grips(actors, [role.script for role in roles])
+    things = dict(actors[0].things)
+    for actor in actors:
+        actor.things = things
+    frames: list[list[Frame]] = [[] for _ in roles]
+    phases, start = [], 0.0
+    for number, row in enumerate(zip(*(role.script for role in roles), strict=True)):
+        for actor, phase in zip(actors, row, strict=True):
+            actor.begin(phase)
+        count = max(round(row[0].seconds * rate_hz), 2)
+        for frame in range(count):
+            share = (frame + 1) / count
+            left = (1.0 - share) * row[0].seconds
+            # Whoever moves something comes first: the others' hands are where it goes.
+            for index in sorted(range(len(row)), key=lambda index: not row[index].moves):
+                later = roles[index].script[number + 1 : number + 2]
+                ahead = later[0] if later and left < LEAD_S and later[0].look else row[index]
+                frames[index].append(actors[index].frame(row[index], share, ahead, 1.0 / rate_hz))
+        phases.append((row[0].name, start, start + count / rate_hz))
+        start += count / rate_hz
+    return {
+        role.name: _performance(role, scene, found, phases, rate_hz)
+        for role, found in zip(roles, frames, strict=True)
+    }
+
+
+def _choose_grips(actors: Sequence["Actor"], scripts: Sequence[Script]) -> None:
+    """Choose everybody's grips, on objects as they are when that one comes to take them."""
+    for actor, script in zip(actors, scripts, strict=True):
+        at_first = dict(actor.things)
+        first = next((at for at, phase in enumerate(script) if phase.hands), len(script))
+        for row in list(zip(*scripts, strict=True))[:first]:
+            for phase in row:
+                for name, move in phase.moves.items():
+                    actor.things[name] = actor.goal(name, move, actor.things[name])
+        actor.choose_grips(script)
+        actor.things = at_first
+
+
+def _performance(
+    role: Role,
+    scene: Scene,
+    frames: Sequence[Frame],
+    phases: Sequence[tuple[str, float, float]],
+    rate_hz: float,
+) -> Performance:
+    """The performance that consists of these frames, in which hands hold what they are to hold."""
+    postures, things, gazes, slips = zip(*frames, strict=True)
+    made = Performance(
+        human=role.human,
+        scene=scene,
+        script=role.script,
+        times=np.arange(len(frames)) / rate_hz,
+        motion=np.array(postures),
+        things={
+            name: RigidTransform.concatenate([each[name] for each in things])
+            for name in scene.things
+        },
+        phases=tuple(phases),
+        gazes=np.array(gazes),
+        looks=tuple(phase.look for phase in role.script),
+        slip_m={side: np.array([each[side] for each in slips]) for side in SIDES},
+    )
+    for phase, (name, start, end) in zip(role.script, phases, strict=True):
+        now = (made.times >= start) & (made.times < end)
+        for side, hand in phase.hands.items():
+            worst = float(made.slip_m[side][now].max())
+            if hand.does == "holds" and worst > REACH_TOLERANCE_M:
+                raise PerformanceError(
+                    f"the {side} hand misses {hand.thing!r} by {worst * 1000:.0f} mm in {name!r}; "
+                    "put the thing or the performer nearer, or use another grip"
+                )
+    return made
 
 
 class Actor:
@@ -147,20 +296,18 @@ class Actor:
         }
         for side, name, kind in sorted(wanted):
             thing = self.scene.thing(name)
-            grips = _grips(thing, side, kind, self.human.measures)
-            grips = [_facing(each, thing.round, self.heading - thing.heading) for each in grips]
-            ends = self._ends(script, name)
+            found = grips(thing, side, kind, self.human.measures)
+            if thing.round:  # it is taken as seen from where the performer faces
+                turn = Rotation.from_euler("z", self.heading - thing.heading)
+                found = [RigidTransform.from_rotation(turn) * grip for grip in found]
+            moves = [phase.moves[name] for phase in script if name in phase.moves]
+            ends = [(self.things[name], False)]
+            ends += [(self.goal(name, each, self.things[name]), each.to_mouth) for each in moves]
             least = np.inf
-            for grip in grips:
+            for grip in found:
                 effort = self._effort(side, grip, ends, least)
                 if effort < least:
                     least, self.grips[side, name, kind] = effort, grip
-
-    def _ends(self, script: Script, name: str) -> list[tuple[RigidTransform, bool]]:
-        """Where a thing stands and goes, and whether that is the mouth."""
-        moves = [phase.moves[name] for phase in script if name in phase.moves]
-        goals = [(self.goal(name, each, self.things[name]), each.to_mouth) for each in moves]
-        return [(self.things[name], False), *goals]
 
     def _effort(
         self, side: str, grip: RigidTransform, ends: list[tuple[RigidTransform, bool]], least: float
@@ -176,7 +323,7 @@ class Actor:
             self.point = self._looked_at("ahead") if drinks else end.translation
             for arm in SIDES:
                 self._aim(arm, end * grip if arm == side else self.home[arm])
-            for _ in range(20):
+            for _ in range(GRIP_ITERATIONS):
                 self._step()
             palm, goal = self.palm(side), end * grip
             missed = np.linalg.norm(palm.translation - goal.translation) / 0.01
@@ -219,10 +366,10 @@ class Actor:
             s: float(np.linalg.norm(self.palm(s).translation - goal.translation))
             for s, goal in goals.items()
         }
-        return Frame(np.array(self.configuration.q), dict(self.things), self.point, slip)
+        return np.array(self.configuration.q), dict(self.things), self.point, slip
 
     def _moved(self, name: str, move: Move, way: float) -> RigidTransform:
-        """Where a thing is part of the way; one that is at the mouth turns about its rim."""
+        """Where an object is part of the way; one that is at the mouth turns about its rim."""
         start = self.thing_starts[name]
         if move.to_mouth and name in self.tilts:
             tilt = self.tilts[name] + way * (move.tilt - self.tilts[name])
@@ -235,7 +382,7 @@ class Actor:
         return RigidTransform.from_translation(arc) * pose
 
     def goal(self, name: str, move: Move, start: RigidTransform) -> RigidTransform:
-        """Where a thing goes; to the mouth as it is when standing, where the head is then kept."""
+        """Where an object goes; to the mouth as it is when standing, at which the head is held."""
         if move.home:
             return self.scene.thing(name).pose
         if any(move.about):
@@ -255,7 +402,7 @@ class Actor:
         """Where a palm is to be: first up, then forward; on the way back the other way round."""
         hand, start = phase.hand(side), self.starts[side]
         if hand.does == "lets_go":
-            by = slowed(hand.velocity, share * phase.seconds, SWINGS_S)
+            by = slowed(hand.velocity, share * phase.seconds, FOLLOW_S)
             return RigidTransform.from_translation(by) * start
         if hand.does == "rests":
             goal = self.home[side]
@@ -315,251 +462,3 @@ class Actor:
         tasks = [*self.tasks, self.mouth] if self.drinks > 0.0 else self.tasks
         velocity = mink.solve_ik(self.configuration, tasks, 1.0, "daqp", limits=self.limits)
         self.configuration.integrate_inplace(velocity, 1.0)
-
-
-def _grips(thing: Thing, side: str, kind: str, measures: Measures) -> list[RigidTransform]:
-    """The grips that are tried."""
-    if kind == "top":
-        return [top_grip(thing, side, measures, yaw=yaw) for yaw in YAWS]
-    if kind == "back":
-        return [back_grip(thing, side, measures, roll=roll) for roll in ROLLS]
-    turns = YAWS if thing.round else YAWS[:1]
-    level = [side_grip(thing, side, measures, yaw=yaw) for yaw in turns]
-    raised = [
-        side_grip(thing, side, measures, yaw=yaw, pitch=pitch)
-        for yaw in turns
-        for pitch in PITCHES[1:]
-    ]
-    top = thing.shape.bounds[1, 2]
-    return [*level, *(each for each in raised if each.translation[2] < top)]
-
-
-def _facing(grip: RigidTransform, free: bool, turn: float) -> RigidTransform:
-    """A grip on a round thing as seen from where the performer faces."""
-    if not free:
-        return grip
-    return RigidTransform.from_rotation(Rotation.from_euler("z", turn)) * grip
-
-
-RATE_HZ = 103.3
-"""Of the thesis's tracker (thesis 3.1) [Hz]."""
-
-REACH_TOLERANCE_M = 0.003
-"""A palm further than this from where it is to be cannot reach it [m]."""
-
-TOUCH_M = 0.003
-"""Where a palm is nearer than this to its grip, it touches the thing [m]."""
-
-
-class PerformanceError(SceneError):
-    """Something that this body cannot do in this scene."""
-
-
-@dataclass(frozen=True, eq=False)
-class Performance:
-    """What was done, to the last joint."""
-
-    human: Human
-    scene: Scene
-    script: Script
-    times: Float[np.ndarray, "frames"]
-    """[s]."""
-
-    motion: Float[np.ndarray, "frames posture"]
-    things: Mapping[str, RigidTransform]
-    """``T_world_thing`` of every thing at every frame."""
-
-    phases: tuple[tuple[str, float, float], ...]
-    """Name, start and end of each [s]."""
-
-    gazes: Float[np.ndarray, "frames 3"]
-    """Point looked at [m]."""
-
-    looks: tuple[str, ...]
-    """What is looked at in each phase."""
-
-    slip_m: Mapping[str, Float[np.ndarray, "frames"]]
-    """By side, distance of a palm from where it is to be [m]."""
-
-
-def perform(
-    human: Human,
-    scene: Scene,
-    script: Script,
-    *,
-    place: tuple[float, float] = (0.0, 0.0),
-    heading: float = 0.0,
-    rate_hz: float = RATE_HZ,
-) -> Performance:
-    """Let a body do a script in a scene.
-
-    Args:
-        human: Of any size.
-        scene: Any that its hands can reach.
-        script: What it does.
-        place: Where it stands [m].
-        heading: Which way it faces [rad].
-        rate_hz: Frames a second.
-
-    Raises:
-        PerformanceError: A hand cannot come where it is to be; the message says by how much.
-        UnknownNameError: The script names a thing that is not there.
-    """
-    actor = Actor(human, scene, place, heading)
-    actor.choose_grips(script)
-    frames, phases, start = [], [], 0.0
-    for number, phase in enumerate(script):
-        actor.begin(phase)
-        count = max(round(phase.seconds * rate_hz), 2)
-        following = script[number + 1] if number + 1 < len(script) else phase
-        for frame in range(count):
-            share = (frame + 1) / count
-            left = (1.0 - share) * phase.seconds
-            ahead = following if left < LEAD_S and following.look else phase
-            frames.append(actor.frame(phase, share, ahead, 1.0 / rate_hz))
-        phases.append((phase.name, start, start + count / rate_hz))
-        start += count / rate_hz
-    made = gathered(human, scene, script, frames, phases, rate_hz)
-    check_holds(made)
-    return made
-
-
-def gathered(
-    human: Human,
-    scene: Scene,
-    script: Script,
-    frames: list[Frame],
-    phases: list[tuple[str, float, float]],
-    rate_hz: float,
-) -> Performance:
-    """The performance that consists of these frames.
-
-    Args:
-        human: Who performs.
-        scene: Where.
-        script: What is done.
-        frames: One after the other.
-        phases: Name, start and end of each [s].
-        rate_hz: Frames a second.
-    """
-    things = {
-        name: RigidTransform.concatenate([each.things[name] for each in frames])
-        for name in scene.things
-    }
-    return Performance(
-        human=human,
-        scene=scene,
-        script=script,
-        times=np.arange(len(frames)) / rate_hz,
-        motion=np.array([each.posture for each in frames]),
-        things=things,
-        phases=tuple(phases),
-        gazes=np.array([each.gaze for each in frames]),
-        looks=tuple(phase.look for phase in script),
-        slip_m={side: np.array([each.slip[side] for each in frames]) for side in SIDES},
-    )
-
-
-def check_holds(made: Performance) -> None:
-    """Hands are where the script has them whenever they hold something.
-
-    Raises:
-        PerformanceError: A hand misses what it is to hold; the message says by how much.
-    """
-    for phase, (name, start, end) in zip(made.script, made.phases, strict=True):
-        now = (made.times >= start) & (made.times < end)
-        for side, hand in phase.hands.items():
-            worst = float(made.slip_m[side][now].max())
-            if hand.does == "holds" and worst > REACH_TOLERANCE_M:
-                raise PerformanceError(
-                    f"the {side} hand misses {hand.thing!r} by {worst * 1000:.0f} mm in {name!r}; "
-                    "put the thing or the performer nearer, or use another grip"
-                )
-
-
-def moved(made: Performance, name: str) -> bool:
-    """Whether a thing is one that may move and did."""
-    path = made.things[name].translation
-    mobile = made.scene.thing(name).tag is TagType.MOBILE
-    return mobile and float(np.ptp(path, axis=0).max()) > 0.0
-
-
-@dataclass(frozen=True, eq=False)
-class Role:
-    """Who does what, and from where."""
-
-    name: str
-    """Of the agent."""
-
-    human: Human
-    script: Script
-    """As many phases as everybody else's, of the same lengths."""
-
-    place: tuple[float, float] = (0.0, 0.0)
-    """Where the body stands [m]."""
-
-    heading: float = 0.0
-    """Which way it faces, from x towards y [rad]."""
-
-
-def perform_together(
-    scene: Scene, roles: Sequence[Role], *, rate_hz: float
-) -> dict[str, Performance]:
-    """Let bodies do their scripts in one scene, where the things are the same for all.
-
-    Args:
-        scene: With what all of them handle.
-        roles: Who does what; in a phase only one of them moves a thing.
-        rate_hz: Frames a second.
-
-    Returns:
-        The performance of each, by the agent's name.
-
-    Raises:
-        PerformanceError: A hand cannot come where it is to be; the message says by how much.
-        UnknownNameError: A script names a thing that is not there.
-    """
-    actors = [Actor(role.human, scene, role.place, role.heading) for role in roles]
-    _choose_grips(actors, [role.script for role in roles])
-    things = dict(actors[0].things)
-    for actor in actors:
-        actor.things = things
-    frames: list[list[Frame]] = [[] for _ in roles]
-    phases, start = [], 0.0
-    for number, row in enumerate(zip(*(role.script for role in roles), strict=True)):
-        for actor, phase in zip(actors, row, strict=True):
-            actor.begin(phase)
-        count = max(round(row[0].seconds * rate_hz), 2)
-        for frame in range(count):
-            share = (frame + 1) / count
-            left = (1.0 - share) * row[0].seconds
-            # Whoever moves something comes first: the others' hands are where it goes.
-            for index in sorted(range(len(row)), key=lambda index: not row[index].moves):
-                later = roles[index].script[number + 1 : number + 2]
-                ahead = later[0] if later and left < LEAD_S and later[0].look else row[index]
-                frames[index].append(actors[index].frame(row[index], share, ahead, 1.0 / rate_hz))
-        phases.append((row[0].name, start, start + count / rate_hz))
-        start += count / rate_hz
-    made = {
-        role.name: gathered(role.human, scene, role.script, found, phases, rate_hz)
-        for role, found in zip(roles, frames, strict=True)
-    }
-    for performance in made.values():
-        check_holds(performance)
-    return made
-
-
-def _choose_grips(actors: Sequence[Actor], scripts: Sequence[Script]) -> None:
-    """Choose everybody's grips, on things as they are when that one comes to take them."""
-    for actor, script in zip(actors, scripts, strict=True):
-        at_first, first = dict(actor.things), _first_use(script)
-        for row in list(zip(*scripts, strict=True))[:first]:
-            for phase in row:
-                for name, move in phase.moves.items():
-                    actor.things[name] = actor.goal(name, move, actor.things[name])
-        actor.choose_grips(script)
-        actor.things = at_first
-
-
-def _first_use(script: Script) -> int:
-    return next((number for number, phase in enumerate(script) if phase.hands), len(script))

@@ -6,67 +6,76 @@ from dataclasses import dataclass, field, replace
 import mink
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import Measures, MeasuresError, estimate_measures
-from capar.body.human import Human
-from capar.body.inverse_kinematics import DirectionTask, GroundTask, PointTask, UprightTask
+from capar.body.human import Human, body_spec
+from capar.body.inverse_kinematics import DirectionTask, GroundTask, PointTask
 from capar.body.sensor_fitting import LARGEST_STEP, SOLVER
 from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH
 from capar.model.errors import CaparError
-from extractors.readers.names import SIDES, Convention, parts, without_side
+from extractors.readers.drafting.contents import Points
+from extractors.readers.names import SIDES, BodyName, parts, without_side
 
 BENT = {"elbow_flexion": 0.4, "knee_flexion": 0.1, "hip_flexion": 0.05}
 """Where the search begins [rad]: a straight limb does not tell which way it bends."""
 
-POINT_COST = 10.0
-EASE_COST = 0.05
-"""Weight of a radian away from standing."""
-
-SPINE_EASE_COST = 0.5
-"""... of a hinge of spine, neck and shoulder girdle: few points see so many hinges, which
-would bend to and fro for millimetres."""
-
 SPINE = ("lumbar", "thorax", "neck", "head", "clavicle")
-"""What names of such hinges begin with, without their side."""
+"""What names of hinges of spine, neck and shoulder girdle begin with, without their side."""
 
-DAMPING_COST = 0.3
-"""Points slightly out of reach would throw a straight limb about: large damping keeps it calm."""
+POINT_COST, EASE_COST, SPINE_EASE_COST, DAMPING_COST = 10.0, 0.05, 0.5, 0.3
+"""Weights of a metre between a point and its place; of a radian away from standing, and of a hinge
+of the spine, where few points see so many hinges; of a step: points slightly out of reach would
+throw a straight limb about."""
 
-FLAT_COST = 2.0
-"""Weight of a radian of a foot's tilt while it stands flat."""
+FLAT_COST, SOLE_COST, GROUND_COST = 2.0, 5.0, 20.0
+"""Weights of a radian of a foot's tilt while it stands flat, of a metre of its sole's height above
+the ground, and of a metre by which a heel or toes are in the ground."""
 
-SOLE_COST = 5.0
-"""Weight of a metre of its sole's height above the ground."""
+STANCE_COST, PLANTED_COST, HANGING_COST = 0.3, 0.5, 0.5
+"""Weights where no leg is seen of a radian of tilt of pelvis and feet and of a metre of a foot from
+where it stands; of a radian by which an unseen arm does not hang straight down."""
 
-STANCE_COST = 0.3
-"""Weight of a radian of tilt of the pelvis, and of the feet, where no leg is seen."""
+FACE_COST, HEAD_COST = 3.0, 1.5
+"""Weights of a radian between the face and where it looks, and of tilt of an unseen head."""
 
-PLANTED_COST = 0.5
-"""Weight of a metre of such a foot from where it stands."""
-
-HANGING_COST = 0.5
-"""Weight of a radian by which the upper arm of an unseen arm does not hang straight down."""
-
-GROUND_COST = 20.0
-"""Weight of a metre by which a heel or toes are in the ground."""
-
-SOLE_PLACES = ("heel", "second_metatarsal", "toe_tip")
-SOLE_SHARE = 0.7
-"""Share of the height of such places above the sole that they keep above the ground [1]: a foot
-that rolls over its heel or toes has them nearer to it."""
-
-FACE_COST = 3.0
-"""Weight of a radian between the face and where it looks, as of a sensor's orientation."""
-
-HEAD_COST = 1.5
-"""Weight of a radian by which an unseen head is not upright: who leans looks ahead all the same."""
+SOLE_PLACES, SOLE_SHARE = ("heel", "second_metatarsal", "toe_tip"), 0.7
+"""Places that keep above the ground by a share of their height above the sole [1]: a foot that
+rolls over its heel or toes has them nearer to it."""
 
 ROAMING_M = 0.5
 """Who goes further than this on unseen legs is not taken to stand on one spot [m]."""
 
-SETTLING = 80
-ITERATIONS = 3
+SETTLING, ITERATIONS, LEAST_PLACES = 80, 3, 4
+"""Iterations for the first frame and for the others; how many places fit a body at least."""
+
+LENGTHS = {
+    "upper_arm": ("upper_arm", "forearm"),
+    "forearm": ("forearm", "hand"),
+    "thigh": ("thigh", "shank"),
+    "shank": ("shank", "foot"),
+}
+"""The two joints, of either side, that a limb's length lies between."""
+
+BREADTHS = {
+    "shoulder_breadth": ("upper_arm", SHOULDER_BREADTH),
+    "spine_breadth": ("thigh", 2 * HIP_OF_SPINES),
+}
+"""The paired joint, and the share of the measure that lies between its two sides."""
+
+TRUNK, TRUNK_OF_LANDMARKS = ("thigh", "upper_arm"), ("asis", "acromion")
+"""Paired joints at the lower and upper end of the trunk; and paired landmarks, over which the skin
+moves much, where nothing else shows its length."""
+
+TRUNK_TRUST = 0.5
+"""Weight of a trunk's length as it is seen against that by stature [1]: shoulders rise and fall by
+as much as trunks of one stature differ."""
+
+TRUNK_HEIGHTS = ("acromial_height", "suprasternale_height", "cervicale_height")
+UPPER_HEIGHTS = ("eye_height", "stature")
+ANKLE_SHARE = (0.6, 1.7)
+"""Ankles are taken to be as high as they are seen if that is between these shares of the usual
+height [1]: soles of shoes raise them, and skeletons have them somewhere between heel and shank."""
 
 
 class SkeletonError(CaparError):
@@ -95,39 +104,81 @@ class Guidance:
         return replace(self, flat=flat, faces=None if self.faces is None else self.faces[frames])
 
 
-def followed(
+@dataclass(frozen=True, eq=False)
+class PointFit:
+    """A body's motion that follows points."""
+
+    human: Human
+    motion: Float[np.ndarray, "frames posture"]
+    residuals_m: Mapping[str, Float[np.ndarray, "frames"]]
+    """By name, distance of the body's place from the point [m]; NaN if lost."""
+
+    segments: Mapping[str, str]
+    """By name, the segment that its place is on."""
+
+    @property
+    def median_m(self) -> float:
+        """Median of all residuals [m]."""
+        return float(np.nanmedian(np.concatenate(list(self.residuals_m.values()))))
+
+
+def fit_points(
     human: Human,
     points: Mapping[str, Float[np.ndarray, "frames 3"]],
     places: Mapping[str, str],
-    convention: Convention,
-    guidance: Guidance,
-) -> Float[np.ndarray, "frames posture"]:
-    """Postures of a body whose places are drawn to points.
+    weights: Mapping[str, float] | None = None,
+    guidance: Guidance | None = None,
+) -> PointFit:
+    """Draw places of the body to points in a world whose z axis points up.
 
     Args:
         human: The body.
-        points: By name [m]; NaN where lost.
-        places: Site or segment of the body for each of them.
-        convention: How much each place counts.
-        guidance: What else is known.
+        points: By name [m]; NaN where lost. Names without a place are ignored.
+        places: Site or segment of the body, by name.
+        weights: How much a place counts, where it is not 1 [1].
+        guidance: What else is known of the motion.
 
     Raises:
-        SkeletonError: There are never three points at once.
+        SkeletonError: Fewer than four places are known, or there are never three points at once.
     """
-    costs = [POINT_COST * convention.weight(place) for place in places.values()]
+    named = {name: places[name] for name in points if name in places}
+    if len(named) < LEAST_PLACES:
+        raise SkeletonError(f"{len(named)} known places on the body; four or more are needed")
+    spots = {name: np.asarray(points[name]) for name in named}
+    motion = _followed(human, spots, named, weights or {}, guidance or Guidance())
+    where = human.sites(motion, set(named.values()))
+    residuals = {n: np.linalg.norm(where[on][0] - spots[n], axis=1) for n, on in named.items()}
+    segments = {name: segment_of(human, place) for name, place in named.items()}
+    return PointFit(human, motion, residuals, segments)
+
+
+def _followed(
+    human: Human,
+    points: Mapping[str, Float[np.ndarray, "frames 3"]],
+    places: Mapping[str, str],
+    weights: Mapping[str, float],
+    guidance: Guidance,
+) -> Float[np.ndarray, "frames posture"]:
+    """Postures of a body, from the frame in which most is seen onwards and backwards."""
+    costs = [POINT_COST * weights.get(place, 1.0) for place in places.values()]
     targets = np.stack([points[name] for name in places], axis=1)
     seen = np.isfinite(targets).all(axis=2) & (np.array(costs) > 0.0)
     best = int(np.argmax(seen.sum(axis=1)))
     start = _start(human, points, places, best)
-    task = PointTask(human.model, list(places.values()), costs)
-    ease = mink.PostureTask(human.model, cost=guidance.ease * _ease_costs(human))
+    task = PointTask(human, list(places.values()), costs)
+    spine = np.array([without_side(joint).startswith(SPINE) for joint in human.joints])
+    easy = np.r_[np.zeros(6), np.where(spine, SPINE_EASE_COST, EASE_COST)]
+    ease = mink.PostureTask(human.model, cost=guidance.ease * easy)
     ease.set_target(start)
-    feet = {side: _Foot(human, side, guidance.ground_m) for side in guidance.flat}
     tasks = [task, ease, mink.DampingTask(human.model, cost=DAMPING_COST)]
-    tasks += [one for foot in feet.values() for one in foot.tasks]
+    level = {side: DirectionTask(f"{side}_foot", FLAT_COST) for side in guidance.flat}
+    height = {} if guidance.ground_m is None else {side: _on_ground(human, side, guidance.ground_m)
+                                                   for side in guidance.flat}  # fmt: skip
+    for side, flat in level.items():
+        tasks += [flat, *([height[side]] if height else [])]
     segments = {segment_of(human, place) for place in places.values()}
     tasks += _hanging(segments) + _above_ground(human, guidance.ground_m)
-    face = DirectionTask("head", (1.0, 0.0, 0.0), FACE_COST)
+    face = DirectionTask("head", FACE_COST, (1.0, 0.0, 0.0))
     tasks += [] if guidance.faces is None else [face]
     if not any(_on_leg(segment) for segment in segments):
         tasks += _stance(human, start, roams=_roams(targets))
@@ -139,8 +190,11 @@ def followed(
         configuration.update(start if frames.step == 1 else out[best])
         for frame in frames:
             task.aim(targets[frame])
-            for side, foot in feet.items():
-                foot.trust(float(guidance.flat[side][frame]))
+            for side, flat in level.items():
+                trust = float(guidance.flat[side][frame])
+                flat.trust(trust)
+                if height:
+                    height[side].set_position_cost([0.0, 0.0, trust * SOLE_COST])
             if guidance.faces is not None:
                 face.trust(float(np.isfinite(guidance.faces[frame]).all()))
                 face.aim(np.nan_to_num(guidance.faces[frame]))
@@ -151,24 +205,12 @@ def followed(
     return out
 
 
-class _Foot:
-    """Tasks of a foot while it stands: flat, and on the ground where its height is known."""
-
-    def __init__(self, human: Human, side: str, ground_m: float | None) -> None:
-        self._level = UprightTask(f"{side}_foot", FLAT_COST)
-        self.tasks: list[mink.Task] = [self._level]
-        self._height: mink.FrameTask | None = None
-        if ground_m is not None:
-            self._height = mink.FrameTask(f"{side}_foot", "body", 0.0, 0.0)
-            ankle = [0.0, 0.0, ground_m + human.measures["ankle_height"]]
-            self._height.set_target(mink.SE3.from_translation(np.array(ankle)))
-            self.tasks.append(self._height)
-
-    def trust(self, share: float) -> None:
-        """Let both count by a share of their weight [1]."""
-        self._level.trust(share)
-        if self._height is not None:
-            self._height.set_position_cost([0.0, 0.0, share * SOLE_COST])
+def _on_ground(human: Human, side: str, ground_m: float) -> mink.FrameTask:
+    """A task that has a foot's ankle at its height above the ground."""
+    task = mink.FrameTask(f"{side}_foot", "body", 0.0, 0.0)
+    ankle = [0.0, 0.0, ground_m + human.measures["ankle_height"]]
+    task.set_target(mink.SE3.from_translation(np.array(ankle)))
+    return task
 
 
 def segment_of(human: Human, place: str) -> str:
@@ -189,11 +231,11 @@ def _hanging(segments: Collection[str]) -> list[mink.Task]:
     They do so whichever way the trunk leans.
     """
     arms: list[mink.Task] = [
-        UprightTask(f"{side}_upper_arm", HANGING_COST)
+        DirectionTask(f"{side}_upper_arm", HANGING_COST)
         for side in SIDES
         if not {f"{side}_{name}" for name in ("forearm", "hand")} & set(segments)
     ]
-    head = [] if {"head", "neck"} & set(segments) else [UprightTask("head", HEAD_COST)]
+    head = [] if {"head", "neck"} & set(segments) else [DirectionTask("head", HEAD_COST)]
     return [*arms, *head]
 
 
@@ -227,18 +269,12 @@ def _stance(human: Human, start: Float[np.ndarray, "posture"], *, roams: bool) -
     configuration = mink.Configuration(human.model)
     configuration.update(upright)
     along = [0.0 if roams else PLANTED_COST] * 2
-    tasks: list[mink.Task] = [UprightTask("pelvis", STANCE_COST)]
+    tasks: list[mink.Task] = [DirectionTask("pelvis", STANCE_COST)]
     for side in SIDES:
         foot = mink.FrameTask(f"{side}_foot", "body", [*along, PLANTED_COST], 0.0)
         foot.set_target_from_configuration(configuration)
-        tasks += [foot, UprightTask(f"{side}_foot", STANCE_COST)]
+        tasks += [foot, DirectionTask(f"{side}_foot", STANCE_COST)]
     return tasks
-
-
-def _ease_costs(human: Human) -> Float[np.ndarray, "dofs"]:
-    """Weight of each hinge's angle; none for the pelvis's pose."""
-    spine = np.array([without_side(joint).startswith(SPINE) for joint in human.joints])
-    return np.r_[np.zeros(6), np.where(spine, SPINE_EASE_COST, EASE_COST)]
 
 
 def _start(
@@ -268,72 +304,25 @@ def _steady(place: str) -> bool:
     return joint or parts().get(without_side(place)) in {"trunk", "pelvis"}
 
 
-LENGTHS = {
-    "upper_arm": ("upper_arm", "forearm"),
-    "forearm": ("forearm", "hand"),
-    "thigh": ("thigh", "shank"),
-    "shank": ("shank", "foot"),
-}
-"""The two joints, of either side, that a limb's length lies between."""
-
-BREADTHS = {
-    "shoulder_breadth": ("upper_arm", SHOULDER_BREADTH),
-    "spine_breadth": ("thigh", 2 * HIP_OF_SPINES),
-}
-"""The paired joint, and the share of the measure that lies between its two sides."""
-
-TRUNK = ("thigh", "upper_arm")
-"""Paired joints at the lower and upper end of the trunk; skin moves too much over bones there."""
-
-TRUNK_OF_LANDMARKS = ("asis", "acromion")
-"""Paired landmarks there, for who has no other measure of the trunk."""
-
-TRUNK_TRUST = 0.5
-"""Weight of a trunk's length as it is seen against that by stature [1]: shoulders rise and fall by
-as much as trunks of one stature differ."""
-
-TRUNK_HEIGHTS = ("acromial_height", "suprasternale_height", "cervicale_height")
-UPPER_HEIGHTS = ("eye_height", "stature")
-ANKLE_SHARE = (0.6, 1.7)
-"""Ankles are taken to be as high as they are seen if that is between these shares of the usual
-height [1]: soles of shoes raise them, and skeletons have them somewhere between heel and shank."""
-
-
-@dataclass(frozen=True, eq=False)
-class SkeletonFit:
-    """A body's motion that follows another skeleton's points."""
-
-    human: Human
-    motion: Float[np.ndarray, "frames posture"]
-    residuals_m: Mapping[str, Float[np.ndarray, "frames"]]
-    """By foreign name, distance of the body's place from the point [m]; NaN if lost."""
-
-    segments: Mapping[str, str]
-    """By foreign name, the segment that its place is on."""
-
-    derived: bool
-    """Whether orientations of segments come of points only, so that turns about the long axes of
-    hands, head and feet are assumed and not seen; always so today: given ones are not used yet."""
-
-    @property
-    def median_m(self) -> float:
-        """Median of all residuals [m]."""
-        return float(np.nanmedian(np.concatenate(list(self.residuals_m.values()))))
-
-
 def measures_from_points(
     points: Mapping[str, Float[np.ndarray, "frames 3"]],
-    convention: Convention,
+    named: Mapping[str, str],
     *,
     sex: str = "male",
     age: float = 30.0,
 ) -> Measures:
     """Measures that a skeleton's own bones have, the stature from the sum of its limbs.
 
+    Args:
+        points: By name [m]; NaN where lost.
+        named: The place on the body of each name.
+        sex: ``male`` or ``female``.
+        age: Years.
+
     Raises:
         SkeletonError: None of the limbs has both its joints.
     """
-    places = {place: points[name] for name, place in convention.named(points).items()}
+    places = {named[name]: where for name, where in points.items() if name in named}
     found = {}
     for measure, (first, second) in LENGTHS.items():
         ends = [(f"{side}_{first}", f"{side}_{second}") for side in SIDES]
@@ -386,21 +375,22 @@ def with_trunk(measures: Measures, share: float) -> Measures:
     heights = {name: hip + share * (measures[name] - hip) for name in TRUNK_HEIGHTS}
     longer = heights["cervicale_height"] - measures["cervicale_height"]
     heights |= {name: measures[name] + longer for name in UPPER_HEIGHTS}
-    given = {name: measures[name] for name in measures.given} | heights
-    try:
-        return estimate_measures(sex=measures.sex, age=measures.age, given=given)
-    except MeasuresError:
-        return measures
+    return _changed(measures, heights)
 
 
 def with_head(measures: Measures, higher_m: float) -> Measures:
     """The same body with a neck longer by so much [m]; the same if no body has such a neck."""
-    raised = {name: measures[name] + higher_m for name in UPPER_HEIGHTS}
-    given = {name: measures[name] for name in measures.given} | raised
-    try:
-        return estimate_measures(sex=measures.sex, age=measures.age, given=given)
-    except MeasuresError:
-        return measures
+    return _changed(measures, {name: measures[name] + higher_m for name in UPPER_HEIGHTS})
+
+
+def with_legs(measures: Measures, lengths: Mapping[str, float]) -> Measures:
+    """The same body with other thighs, shanks or ankle heights [m]; all above moves with them.
+
+    The same if no body has such legs.
+    """
+    higher = sum(length - measures[name] for name, length in lengths.items())
+    raised = {name: measures[name] + higher for name in (*TRUNK_HEIGHTS, *UPPER_HEIGHTS)}
+    return _changed(measures, raised | dict(lengths))
 
 
 def with_ankles(
@@ -411,7 +401,7 @@ def with_ankles(
 ) -> Measures:
     """The same body with its ankles as high above the ground as they are while its feet are flat.
 
-    All above the ankles moves up or down by as much; the same if no body has such feet.
+    The same if no body has such feet.
     """
     heights = [
         float(np.nanmedian(points[name][flat, 2])) - guidance.ground_m
@@ -424,29 +414,12 @@ def with_ankles(
     usual = measures["ankle_height"]
     if not heights or not ANKLE_SHARE[0] < np.mean(heights) / usual < ANKLE_SHARE[1]:
         return measures
-    higher = float(np.mean(heights)) - usual
-    raised = {name: measures[name] + higher for name in (*TRUNK_HEIGHTS, *UPPER_HEIGHTS)}
-    given = {name: measures[name] for name in measures.given} | raised
-    given["ankle_height"] = usual + higher
-    try:
-        return estimate_measures(sex=measures.sex, age=measures.age, given=given)
-    except MeasuresError:
-        return measures
+    return with_legs(measures, {"ankle_height": usual + (float(np.mean(heights)) - usual)})
 
 
-def with_legs(measures: Measures, lengths: Mapping[str, float]) -> Measures:
-    """The same body with other thighs or shanks; all above the hips moves up or down with them.
-
-    Args:
-        measures: The body's.
-        lengths: Of thigh, shank or both [m].
-
-    Returns:
-        The same measures if no body has such legs.
-    """
-    higher = sum(length - measures[name] for name, length in lengths.items())
-    raised = {name: measures[name] + higher for name in (*TRUNK_HEIGHTS, *UPPER_HEIGHTS)}
-    given = {name: measures[name] for name in measures.given} | raised | dict(lengths)
+def _changed(measures: Measures, values: Mapping[str, float]) -> Measures:
+    """The body with some measures given too; the same if there is none such."""
+    given = {name: measures[name] for name in measures.given} | dict(values)
     try:
         return estimate_measures(sex=measures.sex, age=measures.age, given=given)
     except MeasuresError:
@@ -458,33 +431,59 @@ def _apart(first: np.ndarray, second: np.ndarray) -> float:
     return float(np.nanmedian(np.linalg.norm(first - second, axis=1)))
 
 
-def fit_skeleton(
-    points: Mapping[str, Float[np.ndarray, "frames 3"]],
-    convention: Convention,
-    *,
-    human: Human | None = None,
-    guidance: Guidance | None = None,
-) -> SkeletonFit:
-    """Fit the body to joints or key points in a world whose z axis points up.
+SAMPLES = 60
+"""Frames by which sizes and places of markers are found."""
 
-    Args:
-        points: By foreign name [m]; NaN where lost. Names that the convention lacks are ignored.
-        convention: What the names mean.
-        human: The body; made from the skeleton's own bones where None.
-        guidance: What else is known of the motion.
+MIDDLE = {
+    "c7", "t10", "sternum_top", "sternum_low", "sacrum", "head_top", "head", "neck", "pelvis",
+    "nose", "thorax_upper", "thorax_lower", "lumbar_upper", "lumbar_lower",
+}  # fmt: skip
+"""Places of the middle of the body, which need no side."""
 
-    Raises:
-        SkeletonError: Fewer than four places are known, or the points are of no body.
-    """
-    named = convention.named(points)
-    if len(named) < 4:
-        raise SkeletonError(f"{len(named)} places of {convention.title}; four or more are needed")
-    body = human or Human.of(measures_from_points(points, convention))
-    spots = {name: np.asarray(points[name]) for name in named}
-    motion = followed(body, spots, named, convention, guidance or Guidance())
-    where = body.sites(motion, set(named.values()))
-    residuals = {
-        name: np.linalg.norm(where[place][0] - spots[name], axis=1) for name, place in named.items()
-    }
-    segments = {name: segment_of(body, place) for name, place in named.items()}
-    return SkeletonFit(body, motion, residuals, segments, derived=True)
+
+def is_sided(each: BodyName) -> bool:
+    """Whether a name tells all that a place of the body needs."""
+    return each.side != "none" or each.place in MIDDLE
+
+
+def sample_frames(points: Points, names: Mapping[str, BodyName]) -> np.ndarray:
+    """Frames in which most markers are seen, evenly through the recording."""
+    seen = np.sum([~np.isnan(points[name]).any(axis=1) for name in names], axis=0)
+    known = np.flatnonzero(seen >= 0.8 * seen.max())
+    return known[np.unique(np.linspace(0, len(known) - 1, SAMPLES).round().astype(int))]
+
+
+def local_places(
+    made: PointFit, points: Points, names: Mapping[str, BodyName]
+) -> dict[str, Float[np.ndarray, "3"]]:
+    """The median place of every marker in its segment's frame [m]."""
+    human = made.human
+    sided = {name: each.place for name, each in names.items() if is_sided(each)}
+    segments = {name: segment_of(human, place) for name, place in sided.items()}
+    known = {human.model.body(each).name for each in range(human.model.nbody)}
+    segments = {name: each for name, each in segments.items() if each in known}
+    poses = human.sites(made.motion, set(segments.values()))
+    out = {}
+    for name, segment in segments.items():
+        places, turns = poses[segment]
+        seen = ~np.isnan(points[name]).any(axis=1)
+        if seen.any():
+            frame = RigidTransform.from_components(
+                places[seen], Rotation.from_quat(turns[seen], scalar_first=True)
+            )
+            out[name] = np.median(frame.inv().apply(points[name][seen]), axis=0)
+    return out
+
+
+def with_markers(
+    measures: Measures,
+    local: Mapping[str, Float[np.ndarray, "3"]],
+    names: Mapping[str, BodyName],
+) -> Human:
+    """The body with a site for every marker, ``marker_<name>``."""
+    plain = Human.of(measures)
+    spec = body_spec(measures)
+    for name, place in local.items():
+        segment = segment_of(plain, names[name].place)
+        spec.body(segment).add_site(name=f"marker_{name}", pos=place, size=[0.006, 0.0, 0.0])
+    return Human(measures, spec.compile())

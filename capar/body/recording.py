@@ -3,17 +3,16 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.gaze import lines_of_sight
 from capar.body.performing import TOUCH_M, Performance
-from capar.body.scripts import SIDES
+from capar.body.scripts import SIDES, vector
 from capar.body.sensors import PERFECT, Mount, Tracker, recorded, sense, strap_on
-from capar.body.shapes import segment_surface
+from capar.body.shapes import moved, segment_surface
 from capar.body.skeleton import skeleton
 from capar.model import geometry
 from capar.model.capture import Agent, Capture, Role, Sensor, Shape, Stream, TagObject, TagType
@@ -43,22 +42,21 @@ class Truth:
 
 def truth_of(made: Performance) -> Truth:
     """What is so, from the script's own places and not from what a tracker sees."""
-    contacts = []
+    spans: list[tuple[str, str, np.ndarray]] = []
     for side in SIDES:
-        for name, holds in _holds(made, side).items():
-            contacts += [(f"{side}_hand", name, a, b) for a, b in _intervals(made, holds)]
+        spans += [(f"{side}_hand", name, held) for name, held in _holds(made, side).items()]
     for name, thing in made.scene.things.items():
+        path = made.things[name]
         if made.scene.table and thing.tag is TagType.MOBILE:
-            stands = np.abs(made.things[name].translation[:, 2] - thing.place[2]) < TOUCH_M
-            upright = (made.things[name].rotation * thing.pose.rotation.inv()).magnitude() < 0.01
-            for a, b in _intervals(made, stands & upright):
-                contacts.append((name, made.scene.table.name, a, b))
-        for a, b in _intervals(made, _at_mouth(made, name)):
-            contacts.append((name, "head", a, b))
+            stands = np.abs(path.translation[:, 2] - thing.place[2]) < TOUCH_M
+            upright = (path.rotation * thing.pose.rotation.inv()).magnitude() < 0.01
+            spans.append((name, made.scene.table.name, stands & upright))
+        spans.append((name, "head", _at_mouth(made, name)))
+    contacts = [(a, b, *span) for a, b, when in spans for span in _intervals(made, when)]
     motions = [
-        (name, a, b)
+        (name, *span)
         for name in made.scene.things
-        for a, b in _intervals(made, _moves(made.things[name]))
+        for span in _intervals(made, _moves(made.things[name]))
     ]
     looks = [
         (look, start, end)
@@ -97,8 +95,21 @@ def record(
     mounts = strap_on(made.human, sensors, tracker, rng)
     streams = sense(made.human, made.times, made.motion, mounts, tracker, rng)
     worn = [_sensor(made, mounts[place], streams[place]) for place in sensors]
-    things = [_thing(made, each, tracker, rng) for each in made.scene.things]
-    heads = [_head(made, each) for each in worn if each.name == "head"]
+    objects = []
+    for thing in made.scene.things.values():
+        faults = PERFECT if thing.tag is TagType.FIXED else tracker
+        stream, kind = recorded(made.times, made.things[thing.name], faults, rng), thing.kind
+        objects.append(
+            TagObject(
+                thing.name, thing.tag, stream, thing.shape, kind or thing.name,
+                mass_kg=thing.mass_kg,
+            )
+        )  # fmt: skip
+    heads = [
+        TagObject("head", TagType.SELF, each.stream, each.shape, "head")
+        for each in worn
+        if each.name == "head"
+    ]
     if eye_tracker and heads:  # drawn last, so that the others' noise does not depend on it
         worn.append(_eyes(made, tracker, rng))
     measures = {k: round(v, 4) for k, v in made.human.measures.values.items()}
@@ -106,7 +117,7 @@ def record(
     return Capture(
         name=name,
         sensors=tuple(worn),
-        objects=(*heads, *things),
+        objects=(*heads, *objects),
         agent=agent or Agent("performer", kind, {"age": made.human.measures.age, **measures}),
     )
 
@@ -152,18 +163,19 @@ def _sensor(made: Performance, mount: Mount, stream: Stream) -> Sensor:
     seat = mount.pose.inv()
     if mount.place == "head":
         spots, _ = lines_of_sight(made.human, made.human.posture()[None])
-        head = _standing_frame(made, "head")
+        origin = skeleton(made.human.measures)["head"].origin
+        head = RigidTransform.from_translation(origin)
         eye = seat.apply(head.inv().apply(spots[0]))
         ahead = seat.rotation.apply(head.rotation.inv().apply([1.0, 0.0, 0.0]))
-        surface = _moved(segment_surface(made.human.measures, ("head",), "head"), seat)
+        surface = moved(segment_surface(made.human.measures, ("head",), "head"), seat)
         return Sensor(
             "head", "head", "none", "neck", stream, surface,
-            Role.ATTENDS, _three(ahead), _three(eye),
+            Role.ATTENDS, vector(ahead), vector(eye),
         )  # fmt: skip
     shape = None
     if part == "hand":
         parts = tuple(f"{side}_{segment}" for segment in HAND_SEGMENTS)
-        shape = _moved(segment_surface(made.human.measures, parts, f"{side}_hand"), seat)
+        shape = moved(segment_surface(made.human.measures, parts, f"{side}_hand"), seat)
     acts = part in {"hand", "foot"}
     link = f"{side}_{LINKS[part]}" if acts else f"{side}_{part}" if side else mount.place
     return Sensor(
@@ -174,44 +186,12 @@ def _sensor(made: Performance, mount: Mount, stream: Stream) -> Sensor:
 def _eyes(made: Performance, tracker: Tracker, rng: np.random.Generator) -> Sensor:
     """What an eye tracker on the head records: origin between the eyes, x along the sight."""
     spots, ways = lines_of_sight(made.human, made.motion)
-    pose = RigidTransform.from_components(spots, _looking(ways))
-    stream = recorded(made.times, pose, tracker, rng)
-    return Sensor("eyes", "eyes", "none", "neck", stream, None, Role.ATTENDS)
-
-
-def _looking(ways: Float[np.ndarray, "frames 3"]) -> Rotation:
-    """Orientations whose x axis is a direction, level otherwise."""
     yaw = np.arctan2(ways[:, 1], ways[:, 0])
     pitch = np.arcsin(np.clip(-ways[:, 2], -1.0, 1.0))
-    return Rotation.from_euler("ZY", np.stack([yaw, pitch], axis=1))
-
-
-def _thing(made: Performance, name: str, tracker: Tracker, rng: np.random.Generator) -> TagObject:
-    thing = made.scene.thing(name)
-    fixed = thing.tag is TagType.FIXED
-    faultless = Tracker(0.0, 0.0, 0.0, 0.0)
-    stream = recorded(made.times, made.things[name], faultless if fixed else tracker, rng)
-    return TagObject(
-        name, thing.tag, stream, thing.shape, thing.kind or name, mass_kg=thing.mass_kg
-    )
-
-
-def _head(made: Performance, worn: Sensor) -> TagObject:
-    return TagObject("head", TagType.SELF, worn.stream, worn.shape, "head")
-
-
-def _standing_frame(made: Performance, segment: str) -> RigidTransform:
-    origin = skeleton(made.human.measures)[segment].origin
-    return RigidTransform.from_translation(origin)
-
-
-def _moved(shape: Shape, pose: RigidTransform) -> Shape:
-    return Shape(pose.apply(shape.vertices), np.array(shape.faces), description=shape.description)
-
-
-def _three(vector: np.ndarray) -> tuple[float, float, float]:
-    x, y, z = (float(each) for each in vector)
-    return x, y, z
+    level = Rotation.from_euler("ZY", np.stack([yaw, pitch], axis=1))
+    pose = RigidTransform.from_components(spots, level)
+    stream = recorded(made.times, pose, tracker, rng)
+    return Sensor("eyes", "eyes", "none", "neck", stream, None, Role.ATTENDS)
 
 
 def write_bundle(capture: Capture, truth: Truth, folder: Path) -> None:
@@ -311,9 +291,6 @@ def _write(path: Path, lines: list[str]) -> None:
     path.write_bytes(("\n".join(lines) + "\n").encode())
 
 
-Body = TypeVar("Body", Sensor, TagObject)
-
-
 def record_together(
     made: Mapping[str, Performance], *, name: str, seed: int, tracker: Tracker = PERFECT
 ) -> Capture:
@@ -350,8 +327,13 @@ def joined(captures: Mapping[str, Capture], names: Mapping[str, Mapping[str, str
     parts: list[TagObject] = []
     agents = [Agent(who, c.agent.kind, c.agent.measures) for who, c in captures.items()]
     for who, capture in captures.items():
-        sensors += [_named(sensor, names[who], who) for sensor in capture.sensors]
-        parts += [_named(p, names[who], who) for p in capture.objects if p.tag is TagType.SELF]
+        called = names[who]
+        sensors += [replace(s, name=called.get(s.name, s.name), agent=who) for s in capture.sensors]
+        parts += [
+            replace(part, name=called.get(part.name, part.name), agent=who)
+            for part in capture.objects
+            if part.tag is TagType.SELF
+        ]
     first = next(iter(captures.values()))
     things = [thing for thing in first.objects if thing.tag is not TagType.SELF]
     return replace(
@@ -360,21 +342,14 @@ def joined(captures: Mapping[str, Capture], names: Mapping[str, Mapping[str, str
     )  # fmt: skip
 
 
-def _named(body: Body, names: Mapping[str, str], who: str) -> Body:
-    return replace(body, name=names.get(body.name, body.name), agent=who)
-
-
 def truth_together(made: Mapping[str, Performance]) -> Truth:
     """What is so in a performance of several bodies, with the names of their capture."""
-    first, *others = made
-    all_truths = [truth_of(made[first])]
-    all_truths += [_prefixed(truth_of(made[who]), f"{who}_") for who in others]
-    contacts = {contact for truth in all_truths for contact in truth.contacts}
-    looks = [look for truth in all_truths for look in truth.looks]
-    return Truth(tuple(sorted(contacts)), all_truths[0].motions, all_truths[0].phases, tuple(looks))
-
-
-def _prefixed(truth: Truth, prefix: str) -> Truth:
-    parts = {part: prefix + part for part in ("right_hand", "left_hand", "head")}
-    rows = [(parts.get(a, a), parts.get(b, b), start, end) for a, b, start, end in truth.contacts]
-    return replace(truth, contacts=tuple(rows))
+    leader, *others = made
+    truths = {who: truth_of(performance) for who, performance in made.items()}
+    contacts = set(truths[leader].contacts)
+    for who in others:
+        own = {part: f"{who}_{part}" for part in ("right_hand", "left_hand", "head")}
+        rows = truths[who].contacts
+        contacts |= {(own.get(a, a), own.get(b, b), first, last) for a, b, first, last in rows}
+    looks = [look for truth in truths.values() for look in truth.looks]
+    return replace(truths[leader], contacts=tuple(sorted(contacts)), looks=tuple(looks))

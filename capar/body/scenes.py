@@ -1,6 +1,6 @@
 """Scenes of a performer: the shapes and places of objects, and how palms lie on them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
@@ -13,6 +13,28 @@ from capar.body.anthropometry import Measures
 from capar.body.shapes import PALM, PALM_FROM_WRIST
 from capar.model.capture import Shape, TagType
 from capar.model.errors import CaparError, UnknownNameError
+
+LEAF_M, HINGE_M, JAMB_M = (0.04, 0.60, 0.50), 0.42, 0.06
+"""How thick, wide and high a cupboard door is, how far its hinge is to the left of where it is
+pushed, and how thick the posts next to it are [m]."""
+
+DRAWER_M, BOARD_M = (0.36, 0.30, 0.12), 0.02
+"""How deep, wide and high a drawer is, and how thick the boards of its chest are [m]."""
+
+GAP_M = 0.003
+"""Between what moves and what guides it [m]."""
+
+AIR_M, CLEAR_M, WRIST_OUT_M = 0.0005, 0.014, 0.022
+"""What is left between palm and object, so that surfaces touch and do not cut; how far a hand at an
+object's side stays above what that stands on; how far the wrist of a hand at a box's side is out of
+the box, and with it the forearm [m]."""
+
+YAWS = (0.0, -0.35, -0.7, -1.05, 0.35)
+"""Directions of the fingers tried on a round object, outwards positive [rad]."""
+
+ROLLS, PITCHES = (0.0, 0.7, 1.2, 1.4, 1.57), (0.0, 0.25, 0.5)
+"""How far the fingers on an object's near side lean outwards from upright, and how far they rise
+above the level at its side [rad]."""
 
 
 class SceneError(CaparError):
@@ -51,16 +73,16 @@ class Thing:
 
 @dataclass(frozen=True, eq=False)
 class Things:
-    """Things by name."""
+    """Objects by name."""
 
     things: Mapping[str, Thing]
 
     def __post_init__(self) -> None:
-        """Make the things read-only."""
+        """Make the objects read-only."""
         object.__setattr__(self, "things", MappingProxyType(dict(self.things)))
 
     def thing(self, name: str) -> Thing:
-        """The thing of that name.
+        """The object of that name.
 
         Raises:
             UnknownNameError: There is none.
@@ -78,13 +100,13 @@ class Scene(Things):
 
     @property
     def table(self) -> Thing | None:
-        """The first fixed thing, on which the others stand."""
+        """The first fixed object, on which the others stand."""
         fixed = (each for each in self.things.values() if each.tag is TagType.FIXED)
         return next(fixed, None)
 
 
 def scene(*things: Thing) -> Scene:
-    """A scene of these things."""
+    """A scene of these objects."""
     return Scene({each.name: each for each in things})
 
 
@@ -118,29 +140,6 @@ def table(
     return Thing(name, top, place, tag=TagType.FIXED, kind="table")
 
 
-def _shape(mesh: trimesh.Trimesh, description: str) -> Shape:
-    return Shape(np.array(mesh.vertices), np.array(mesh.faces), description=description)
-
-
-LEAF_M = (0.04, 0.60, 0.50)
-"""A cupboard door: how thick, wide and high [m]."""
-
-HINGE_M = 0.42
-"""How far the hinge is to the left of where the door is pushed [m]."""
-
-JAMB_M = 0.06
-"""How thick the posts beside a door are [m]."""
-
-GAP_M = 0.003
-"""Between what moves and what guides it [m]."""
-
-DRAWER_M = (0.36, 0.30, 0.12)
-"""A drawer: how deep, wide and high [m]."""
-
-BOARD_M = 0.02
-"""How thick the boards of a chest are [m]."""
-
-
 def door_scene(tall_m: float) -> Scene:
     """A closed door at chest height between two posts, its hinge to the left.
 
@@ -151,20 +150,19 @@ def door_scene(tall_m: float) -> Scene:
     """
     thick, wide, high = LEAF_M
     place = (0.30 * tall_m, -0.06 * tall_m, 0.55 * tall_m)
-    middle = HINGE_M - 0.5 * wide
-    leaf = _boxes([((thick, wide, high), (0.5 * thick, middle, 0.5 * high))], "door leaf")
-    beside = 0.5 * (wide + JAMB_M) + GAP_M
+    middle, beside = HINGE_M - 0.5 * wide, 0.5 * (wide + JAMB_M) + GAP_M
     posts = [
         ((thick, JAMB_M, high), (0.5 * thick, middle + aside, 0.5 * high))
         for aside in (beside, -beside)
     ]
     beam = ((thick, wide + 2.0 * (JAMB_M + GAP_M), JAMB_M),
             (0.5 * thick, middle, high + GAP_M + 0.5 * JAMB_M))  # fmt: skip
-    frame = _boxes([*posts, beam], "posts and beam")
+    leaf = ((thick, wide, high), (0.5 * thick, middle, 0.5 * high))
     return scene(
-        Thing("frame", frame, place, tag=TagType.FIXED, kind="frame"),
-        Thing("door", leaf, place, kind="door"),
-    )
+        Thing("frame", _boxes([*posts, beam], "posts and beam"), place,
+              tag=TagType.FIXED, kind="frame"),
+        Thing("door", _boxes([leaf], "door leaf"), place, kind="door"),
+    )  # fmt: skip
 
 
 def drawer_scene(tall_m: float) -> Scene:
@@ -175,7 +173,6 @@ def drawer_scene(tall_m: float) -> Scene:
     """
     deep, wide, high = DRAWER_M
     place = (0.32 * tall_m, -0.10 * tall_m, 0.50 * tall_m)
-    drawer = _boxes([((deep, wide, high), (0.5 * deep - 0.1, 0.0, 0.5 * high))], "drawer")
     x, below = 0.5 * deep - 0.1, BOARD_M + GAP_M
     sides = [
         ((deep, BOARD_M, high), (x, sign * (0.5 * (wide + BOARD_M) + GAP_M), 0.5 * high - below))
@@ -184,18 +181,16 @@ def drawer_scene(tall_m: float) -> Scene:
     floor = ((deep, wide + 2.0 * (BOARD_M + GAP_M), BOARD_M), (x, 0.0, -0.5 * BOARD_M - GAP_M))
     back = ((BOARD_M, wide, high), (deep - 0.1 + 0.5 * BOARD_M + GAP_M, 0.0, 0.5 * high - below))
     chest = _boxes([*sides, floor, back], "chest without a top")
+    drawer = _boxes([((deep, wide, high), (x, 0.0, 0.5 * high))], "drawer")
     return scene(
         Thing("chest", chest, place, tag=TagType.FIXED, kind="chest"),
         Thing("drawer", drawer, place, kind="drawer"),
     )
 
 
-GUIDED = {"door": door_scene, "drawer": drawer_scene}
-"""Scenes by the action that they are for, of the performer's stature [m]."""
-
-
 def _boxes(
-    parts: list[tuple[tuple[float, float, float], tuple[float, float, float]]], description: str
+    parts: Sequence[tuple[tuple[float, float, float], tuple[float, float, float]]],
+    description: str,
 ) -> Shape:
     """Boxes of some sizes with their middles somewhere, as one shape [m]."""
     vertices, faces = [], []
@@ -206,54 +201,52 @@ def _boxes(
     return Shape(np.concatenate(vertices), np.concatenate(faces), description=description)
 
 
-AIR_M = 0.0005
-"""What is left between palm and thing, so that surfaces touch and do not cut [m]."""
-
-CLEAR_M = 0.014
-"""How far a hand at a thing's side stays above what the thing stands on [m]."""
-
-WRIST_OUT_M = 0.022
-"""How far the wrist of a hand at a box's side is out of the box, and with it the forearm [m]."""
-
-YAWS = (0.0, -0.35, -0.7, -1.05, 0.35)
-"""Directions of the fingers tried on a round thing, outwards positive [rad]."""
-
-ROLLS = (0.0, 0.7, 1.2, 1.4, 1.57)
-"""How far the fingers on a thing's near side lean outwards from upright [rad]."""
-
-PITCHES = (0.0, 0.25, 0.5)
-"""Likewise their rise above the level [rad]."""
+def _shape(mesh: trimesh.Trimesh, description: str) -> Shape:
+    return Shape(np.array(mesh.vertices), np.array(mesh.faces), description=description)
 
 
-def side_grip(
-    thing: Thing, side: str, measures: Measures, *, yaw: float = 0.0, pitch: float = 0.0
-) -> RigidTransform:
-    """``T_thing_palm`` of a hand at its own side of a thing, thumb up, fingers forward.
+def grips(thing: Thing, side: str, kind: str, measures: Measures) -> list[RigidTransform]:
+    """``T_thing_palm`` of the grips that a hand may take, the easiest to state first.
 
     Args:
-        thing: Whose frame it is in; fingers point along its x axis.
+        thing: Whose frame they are in; its x axis leads away from the performer.
         side: ``right`` or ``left``.
-        measures: Whose hand; it stays clear of what the thing stands on.
-        yaw: Turn of the grip about the thing's axis, outwards positive [rad].
-        pitch: Rise of the fingers above the level [rad].
+        kind: ``side`` (thumb up, fingers forward), ``top``, or ``back`` (on the side that faces the
+            performer, fingers upwards).
+        measures: Whose hand; it stays clear of what the object stands on.
     """
-    sign = 1.0 if side == "right" else -1.0
+    if kind == "top":
+        return [_top_grip(thing, side, measures, yaw) for yaw in YAWS]
+    if kind == "back":
+        return [_back_grip(thing, side, measures, roll) for roll in ROLLS]
+    turns = YAWS if thing.round else YAWS[:1]
+    level = [_side_grip(thing, side, measures, yaw, PITCHES[0]) for yaw in turns]
+    raised = [
+        _side_grip(thing, side, measures, yaw, pitch) for yaw in turns for pitch in PITCHES[1:]
+    ]
+    top = thing.shape.bounds[1, 2]
+    return [*level, *(each for each in raised if each.translation[2] < top)]
+
+
+def _side_grip(
+    thing: Thing, side: str, measures: Measures, yaw: float, pitch: float
+) -> RigidTransform:
+    """A hand at its own side, turned outwards by yaw, its fingers raised by pitch [rad]."""
+    sign, hand_m = 1.0 if side == "right" else -1.0, measures["hand_length"]
     turn = Rotation.from_euler("z", -sign * yaw)
     inwards = turn.apply([0.0, sign, 0.0])
     fingers = turn.apply([np.cos(pitch), 0.0, np.sin(pitch)])
     low, high = thing.shape.bounds
-    heel = PALM[0] * np.cos(pitch) + 0.44 * np.sin(pitch)
-    height = max(0.5 * (low[2] + high[2]), low[2] + heel * measures["hand_length"] + CLEAR_M)
     reach = (-low[1] if side == "right" else high[1]) + AIR_M
-    place = np.array([0.0, 0.0, height]) - inwards * reach
+    place = np.array([0.0, 0.0, _clear_height(thing, hand_m, pitch)]) - inwards * reach
     if not thing.round:
-        wrist = PALM_FROM_WRIST * np.cos(pitch) * measures["hand_length"]
+        wrist = PALM_FROM_WRIST * np.cos(pitch) * hand_m
         place[0] = min(0.0, low[0] - WRIST_OUT_M + wrist)
     return RigidTransform.from_components(place, palm_turn(inwards, fingers))
 
 
-def top_grip(thing: Thing, side: str, measures: Measures, *, yaw: float = 0.0) -> RigidTransform:
-    """``T_thing_palm`` of a hand laid on top of a thing, fingers forward."""
+def _top_grip(thing: Thing, side: str, measures: Measures, yaw: float) -> RigidTransform:
+    """A hand laid on top of an object, fingers forward, turned outwards by yaw [rad]."""
     sign = 1.0 if side == "right" else -1.0
     fingers = Rotation.from_euler("z", sign * yaw).apply([1.0, 0.0, 0.0])
     top = np.array([0.0, 0.0, thing.shape.bounds[1, 2] + AIR_M])
@@ -261,22 +254,20 @@ def top_grip(thing: Thing, side: str, measures: Measures, *, yaw: float = 0.0) -
     return RigidTransform.from_components(top - back, palm_turn([0.0, 0.0, -1.0], fingers))
 
 
-def back_grip(thing: Thing, side: str, measures: Measures, *, roll: float = 0.0) -> RigidTransform:
-    """``T_thing_palm`` of a hand on the side that faces the performer, fingers upwards.
-
-    Args:
-        thing: Whose frame it is in; its x axis leads away from the performer.
-        side: ``right`` or ``left``.
-        measures: Whose hand; its heel stays clear of what the thing stands on.
-        roll: How far the fingers lean outwards from upright [rad].
-    """
+def _back_grip(thing: Thing, side: str, measures: Measures, roll: float) -> RigidTransform:
+    """A hand on the near side, fingers leaning outwards from upright by roll [rad]."""
     sign = 1.0 if side == "right" else -1.0
     fingers = np.array([0.0, -sign * np.sin(roll), np.cos(roll)])
-    low, high = thing.shape.bounds
-    heel = PALM[0] * np.cos(roll) + 0.44 * np.sin(roll)
-    height = max(0.5 * (low[2] + high[2]), low[2] + heel * measures["hand_length"] + CLEAR_M)
-    place = np.array([low[0] - AIR_M, 0.0, height])
+    height = _clear_height(thing, measures["hand_length"], roll)
+    place = np.array([thing.shape.bounds[0, 0] - AIR_M, 0.0, height])
     return RigidTransform.from_components(place, palm_turn([1.0, 0.0, 0.0], fingers))
+
+
+def _clear_height(thing: Thing, hand_m: float, tilt: float) -> float:
+    """The middle of an object, or higher if the heel of the hand would be too low [m]."""
+    low, high = thing.shape.bounds
+    heel = PALM[0] * np.cos(tilt) + 0.44 * np.sin(tilt)
+    return float(max(0.5 * (low[2] + high[2]), low[2] + heel * hand_m + CLEAR_M))
 
 
 def palm_turn(

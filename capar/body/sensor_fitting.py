@@ -1,7 +1,7 @@
 """From sensors to motion: inverse kinematics, residuals, and limb lengths from the motion."""
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import mink
@@ -12,7 +12,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import Measures, measures_of
 from capar.body.human import ROOT_SIZE, Human
-from capar.body.inverse_kinematics import Solver, UprightTask
+from capar.body.inverse_kinematics import DirectionTask, Solver
 from capar.body.sensors import (
     PLACEMENT_M,
     Calibration,
@@ -27,32 +27,23 @@ from capar.body.skeleton import skeleton
 from capar.model import geometry
 from capar.model.capture import Capture, Stream
 from capar.model.errors import CaparError
-from extractors.readers.names import without_side
+from extractors.readers.names import SIDES, without_side
 
 SOLVER = "daqp"
-POSITION_COST = 10.0
-"""Weight of a metre."""
+POSITION_COST, ORIENTATION_COST = 10.0, 3.0
+"""Weights of a metre and of a radian between a sensor and its place on the body."""
 
-ORIENTATION_COST = 3.0
-"""Weight of a radian."""
-
-POSTURE_COST = 0.05
-"""Weight of a radian away from the posture aimed at, for a hinge of one radian's range."""
+POSTURE_COST, BRIDGE_COST = 0.05, 0.5
+"""Weights of a radian away from the posture aimed at: for a hinge of one radian's range, and where
+a sensor is lost."""
 
 DAMPING_COST = 0.03
 """Weight of a radian's step from frame to frame: without it solutions chatter at joint limits."""
 
-LOWER = ("pelvis", "thigh", "shank", "foot", "toes")
-"""How the names of segments of the lower body end."""
-
-UPRIGHT_COST = 0.5
-"""Weight of a radian of the pelvis's tilt where nothing below the chest is seen."""
-
-STANDING_COST = (5.0, 0.5)
-"""Weights of a metre of a foot's height and of a radian of its tilt, likewise."""
-
-ON_SPOT_COST = (2.0, 1.0)
-"""Weights of a metre of a foot and of the pelvis from where they stood, where sensors stay near."""
+UPRIGHT_COST, STANDING_COST, ON_SPOT_COST = 0.5, (5.0, 0.5), (2.0, 1.0)
+"""Weights where no sensor is below the chest: of a radian of the pelvis's tilt; of a metre of a
+foot's height and a radian of its tilt; of a metre of a foot and of the pelvis from where they stood
+if the sensors stay near."""
 
 ON_SPOT_M = 0.5
 """Who moves no further than this, by the mean of all sensors, stands on one spot [m]."""
@@ -61,21 +52,53 @@ TRUNK_COST = 0.15
 """Weight of a radian of the upper trunk's tilt where no sensor is on it: hands and head alone
 would let it lean as far as they reach together."""
 
-SETTLING = 60
-"""Iterations for the first frame."""
+SETTLING, CATCHING_UP = 60, 20
+"""Iterations for the first frame, and more of them at most where a sensor is left behind."""
 
 FAR_BEHIND_M = 0.02
-"""Where a sensor is still farther from its place on the body than this after the usual steps, more
-are taken [m]."""
-
-CATCHING_UP = 20
-"""Steps of that kind at most."""
-
-STEP_S = 1.0
-"""Unit of time of one step [s]; steps are bounded as angles, whatever the recording's rate."""
+"""A sensor farther than this from its place after the usual steps is left behind [m]."""
 
 LARGEST_STEP = 0.35
-"""Largest step of a hinge in one iteration [rad]."""
+"""Largest step of a hinge in one iteration [rad], whatever the recording's rate."""
+
+LIMIT_MARGIN = float(np.radians(0.1))
+"""A hinge this near its limit counts as at it [rad]."""
+
+LOWER = ("pelvis", "thigh", "shank", "foot", "toes")
+"""How the names of segments of the lower body end."""
+
+ENDS = ("fingers", "fingertips", "thumb", "toes", "eye")
+"""Segments that are taken to be seen with those that they are on."""
+
+OTHER_NAMES = {"pelvis": "l5", "sacrum": "l5", "neck_base": "neck"}
+"""What sensors are called besides the names of their places."""
+
+FREE = (
+    "upper_arm", "forearm", "acromial_height", "shoulder_breadth", "cervicale_height",
+    "thigh", "shank", "spine_breadth",
+)  # fmt: skip
+"""The measures that decide where joints are, and are estimated from a motion."""
+
+SAMPLES, ROUNDS = 60, 6
+"""Frames and Gauss-Newton steps by which they are."""
+
+NOISE_M, NOISE_RAD = 0.002, float(np.radians(0.7))
+"""Deviations of a filtered sensor's pose, soft tissue included [m] and [rad]."""
+
+REFERENCE_RAD, LOOSE_RAD = float(np.radians(1.5)), 1.0
+"""Deviations of a hinge from the reference posture that somebody takes up, and from standing during
+the motion [rad]."""
+
+DELTA_M = 1e-4
+"""Step of finite differences [m]."""
+
+
+class FitError(CaparError):
+    """Sensors that the body cannot be fitted to."""
+
+
+class RefinementError(CaparError):
+    """A motion from which no measures can be estimated."""
 
 
 class Follower:
@@ -94,17 +117,15 @@ class Follower:
         self.posture = mink.PostureTask(human.model, cost=self.posture_cost)
         self.posture.set_target(rest)
         self.damping = mink.DampingTask(human.model, cost=DAMPING_COST)
-        speeds = dict.fromkeys(human.joints, LARGEST_STEP / STEP_S)
+        speeds = dict.fromkeys(human.joints, LARGEST_STEP)
         self.limits = [
             mink.ConfigurationLimit(human.model),
             mink.VelocityLimit(human.model, speeds),
         ]
         self.configuration = mink.Configuration(human.model)
-        self.stance = [] if self._sees_legs() else self._stance(rest)
-
-    def _sees_legs(self) -> bool:
-        """Whether a sensor is on the pelvis or below it."""
-        return any(places()[place].endswith(LOWER) for place in self.targets)
+        self.segments = [places()[place] for place in targets]
+        legs_seen = any(segment.endswith(LOWER) for segment in self.segments)
+        self.stance = [] if legs_seen else self._stance(rest)
 
     def _stance(self, rest: Float[np.ndarray, "posture"]) -> list[mink.Task]:
         """Tasks of a body of which only the upper part is seen: it stands, wherever that is.
@@ -114,31 +135,23 @@ class Follower:
         would tilt as one piece.
         """
         self.configuration.update(rest)
-        level, stays = np.array([1.0, 1.0, 0.0]), float(self._stays())
+        middle = np.mean([target.positions[:, :2] for target in self.targets.values()], axis=0)
+        stays = float(np.linalg.norm(np.ptp(middle, axis=0)) < ON_SPOT_M)
+        level = np.array([1.0, 1.0, 0.0])
         foot, pelvis = (np.multiply(stays * cost, level) for cost in ON_SPOT_COST)
         foot[2] = STANDING_COST[0]
-        standing = [mink.FrameTask("pelvis", "body", pelvis, UPRIGHT_COST * level)]
-        for side in ("right", "left"):
-            flat = STANDING_COST[1] * level
-            standing.append(mink.FrameTask(f"{side}_foot", "body", foot, flat))
+        standing: list[mink.Task] = [mink.FrameTask("pelvis", "body", pelvis, UPRIGHT_COST * level)]
+        for side in SIDES:
+            standing.append(mink.FrameTask(f"{side}_foot", "body", foot, STANDING_COST[1] * level))
         for task in standing:
             task.set_target_from_configuration(self.configuration)
-        trunk = [] if self._sees_trunk() else [UprightTask("thorax_upper", TRUNK_COST)]
-        return [*standing, *trunk]
-
-    def _stays(self) -> bool:
-        """Whether the body stands on one spot, by the middle of its sensors."""
-        middle = np.mean([target.positions[:, :2] for target in self.targets.values()], axis=0)
-        return bool(np.linalg.norm(np.ptp(middle, axis=0)) < ON_SPOT_M)
-
-    def _sees_trunk(self) -> bool:
-        """Whether a sensor is on the trunk above the pelvis."""
-        return any(places()[place].startswith(("thorax", "lumbar")) for place in self.targets)
+        on_trunk = any(segment.startswith(("thorax", "lumbar")) for segment in self.segments)
+        return standing if on_trunk else [*standing, DirectionTask("thorax_upper", TRUNK_COST)]
 
     def run(
         self, frames: range, start: Float[np.ndarray, "posture"], iterations: int
     ) -> Float[np.ndarray, "frames posture"]:
-        """Postures at some frames in a row, from a posture near the first."""
+        """Postures at consecutive frames, from a posture near the first."""
         self.configuration.update(start)
         out = np.empty((len(frames), len(start)))
         for row, frame in enumerate(frames):
@@ -150,9 +163,9 @@ class Follower:
         return out
 
     def _catch_up(self) -> None:
-        """Go on in steps that never lead away, where plain ones leave sensors far behind.
+        """Go on in steps that never overshoot, where plain ones leave sensors far behind.
 
-        At a straight limb, or at the end of a joint's range, plain steps overshoot.
+        Plain steps overshoot at a straight limb, or at the end of a joint's range.
         """
         if self._behind_m() < FAR_BEHIND_M:
             return
@@ -199,29 +212,9 @@ class Follower:
 
     def step(self) -> None:
         """One step of inverse kinematics."""
-        velocity = mink.solve_ik(
-            self.configuration,
-            [*self._seen(), *self.stance, self.posture, self.damping],
-            STEP_S,
-            SOLVER,
-            limits=self.limits,
-        )
-        self.configuration.integrate_inplace(velocity, STEP_S)
-
-
-BRIDGE_COST = 0.5
-"""Weight of the posture where a sensor is lost."""
-
-LIMIT_MARGIN = float(np.radians(0.1))
-"""A hinge this near its limit counts as at it [rad]."""
-
-
-class FitError(CaparError):
-    """Sensors that the body cannot be fitted to."""
-
-
-ENDS = ("fingers", "fingertips", "thumb", "toes", "eye")
-"""Segments that are taken to be seen with those that they are on."""
+        tasks = [*self._seen(), *self.stance, self.posture, self.damping]
+        velocity = mink.solve_ik(self.configuration, tasks, 1.0, SOLVER, limits=self.limits)
+        self.configuration.integrate_inplace(velocity, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -294,35 +287,41 @@ def fit(
     for place, stream in known.items():
         if not np.array_equal(stream.times, clock):
             raise FitError(f"sensor {place!r} is on another clock; resample them to one")
-    body = mounted(human, calibration)
+    body = mounted(human, calibration.mounts)
     targets = {place: target(each) for place, each in known.items()}
     follower = Follower(body, targets, calibration.posture)
     motion = follower.run(range(len(clock)), calibration.posture, iterations)
-    motion = _bridge(follower, motion, targets, iterations)
+    motion = _bridge(follower, motion, iterations)
     seconds = time.perf_counter() - began
-    bridged = {place: each.weights == 0.0 for place, each in targets.items()}
-    segments = {place: places()[place] for place in known}
-    made = Fit(body, clock, motion, bridged, {}, {}, seconds, segments)
-    return _with_residuals(made, targets)
+    sites = body.sites(motion, [f"sensor_{each}" for each in targets])
+    metres, radians = {}, {}
+    for place, one in targets.items():
+        spots, turns = sites[f"sensor_{place}"]
+        metres[place] = np.linalg.norm(spots - one.positions, axis=1)
+        radians[place] = geometry.angle_between(turns, one.orientations)
+    return Fit(
+        body, clock, motion,
+        {place: each.weights == 0.0 for place, each in targets.items()},
+        metres, radians, seconds, {place: places()[place] for place in known},
+    )  # fmt: skip
 
 
 def _bridge(
-    follower: Follower,
-    motion: Float[np.ndarray, "frames posture"],
-    targets: Mapping[str, Target],
-    iterations: int,
+    follower: Follower, motion: Float[np.ndarray, "frames posture"], iterations: int
 ) -> Float[np.ndarray, "frames posture"]:
     """The motion with unseen hinges led from the one end of every loss to the other."""
-    faint = np.min([each.weights for each in targets.values()], axis=0) < 1.0
+    faint = np.min([each.weights for each in follower.targets.values()], axis=0) < 1.0
     out = motion.copy()
     for first, last in geometry.runs(faint):
         ends = [max(first - 1, 0), min(last + 1, len(motion) - 1)]
         if faint[ends[0]] or faint[ends[1]]:  # a loss at an end of the recording: hold the other
             ends = ends[1:] * 2 if faint[ends[0]] else ends[:1] * 2
-        follower.configuration.update(motion[ends[0]])
+        start, end = motion[ends[0]], motion[ends[1]]
+        follower.configuration.update(start)
         for frame in range(first, last + 1):
             share = (frame - first + 1) / (last - first + 2)
-            follower.posture.set_target(_between(motion[ends[0]], motion[ends[1]], share))
+            way = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)  # of minimum jerk
+            follower.posture.set_target(start + way * (end - start))
             follower.posture.set_cost(follower.posture_cost + follower.blind(frame) * BRIDGE_COST)
             follower.aim(frame)
             for _ in range(iterations + 1):
@@ -331,296 +330,21 @@ def _bridge(
     return out
 
 
-def _between(
-    first: Float[np.ndarray, "posture"], last: Float[np.ndarray, "posture"], share: float
-) -> Float[np.ndarray, "posture"]:
-    """A posture on the way, of minimum jerk; the pelvis's pose is the last's."""
-    way = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
-    return first + way * (last - first)
-
-
-def _with_residuals(made: Fit, targets: Mapping[str, Target]) -> Fit:
-    sites = made.human.sites(made.motion, [f"sensor_{each}" for each in targets])
-    metres, radians = {}, {}
-    for place, one in targets.items():
-        spots, turns = sites[f"sensor_{place}"]
-        metres[place] = np.linalg.norm(spots - one.positions, axis=1)
-        radians[place] = geometry.angle_between(turns, one.orientations)
-    return replace(made, residuals_m=metres, residuals_rad=radians)
-
-
-FREE = (
-    "upper_arm", "forearm", "acromial_height", "shoulder_breadth", "cervicale_height",
-    "thigh", "shank", "spine_breadth",
-)  # fmt: skip
-"""The measures that decide where joints are, and are estimated."""
-
-SAMPLES = 60
-"""Frames that take part."""
-
-NOISE_M = 0.002
-"""Deviation of a filtered sensor's place, soft tissue included [m]."""
-
-NOISE_RAD = float(np.radians(0.7))
-"""Deviation of a filtered sensor's orientation, soft tissue included [rad]."""
-
-REFERENCE_RAD = float(np.radians(1.5))
-"""Deviation of a hinge from the reference posture that somebody takes up [rad]."""
-
-LOOSE_RAD = 1.0
-"""Deviation of a hinge from standing, during the motion [rad]."""
-
-ROUNDS = 6
-"""Gauss-Newton steps."""
-
-
-class RefinementError(CaparError):
-    """A motion from which no measures can be estimated."""
-
-
-@dataclass(frozen=True, eq=False)
-class Refinement:
-    """What a motion says of its performer's measures."""
-
-    measures: Measures
-    """The measures, each with its deviation after the motion was seen."""
-
-    calibration: Calibration
-    """The sensors on the body with these measures."""
-
-    gained: Mapping[str, float]
-    """Of each estimated measure, its deviation as a share of the one before [1]."""
-
-
-@dataclass(eq=False)
-class _State:
-    """Where the estimate stands."""
-
-    measures: Measures
-    mounts: dict[str, Mount]
-    postures: Float[np.ndarray, "samples posture"]
-
-    @property
-    def human(self) -> Human:
-        plain = Human.of(self.measures)
-        return mounted(plain, Calibration(self.mounts, plain.posture(), {}))
-
-
-def refine(
-    made: Fit, streams: Mapping[str, Stream], calibration: Calibration, *, samples: int = SAMPLES
-) -> Refinement:
-    """Estimate measures and the places of sensors from a motion that was fitted.
-
-    Args:
-        made: The motion fitted to the same sensors.
-        streams: By place, as recorded.
-        calibration: From the reference posture at the beginning.
-        samples: How many frames take part.
-
-    Raises:
-        RefinementError: Fewer than ten frames have all the sensors.
-    """
-    targets = {place: target(streams[place]) for place in calibration.mounts}
-    seen = np.flatnonzero(np.min([each.weights for each in targets.values()], axis=0) >= 1.0)
-    if len(seen) < 10:
-        raise RefinementError(f"{len(seen)} frames with all of {sorted(targets)}; ten are needed")
-    frames = np.unique(seen[np.linspace(0, len(seen) - 1, samples).astype(int)])
-    postures = made.motion[frames].copy()
-    postures[0] = calibration.posture
-    state = _State(made.human.measures, dict(calibration.mounts), postures)
-    problem = _Problem(targets, frames, calibration, made.human.measures)
-    for _ in range(ROUNDS):
-        covariance = problem.step(state)
-    before = made.human.measures.deviations
-    after = {name: float(np.sqrt(covariance[n, n])) for n, name in enumerate(FREE)}
-    measures = _with(state.measures, {}, {**before, **after})
-    refined = Calibration(state.mounts, calibration.posture, calibration.misplaced)
-    return Refinement(measures, refined, {name: after[name] / before[name] for name in FREE})
-
-
-@dataclass(frozen=True, eq=False)
-class _Problem:
-    """Targets and priors."""
-
-    targets: Mapping[str, Target]
-    frames: np.ndarray
-    calibration: Calibration
-    prior: Measures
-
-    def step(self, state: _State) -> Float[np.ndarray, "parameters parameters"]:
-        """One Gauss-Newton step with the postures eliminated; returns the covariance."""
-        human = state.human
-        shapes = _by_measure(state, self.frames.size)
-        schur, pull = self._priors(state, human)
-        kept = []
-        for sample in range(len(self.frames)):
-            rest, by_posture, by_other = self._frame(state, human, sample, shapes)
-            own = by_posture.T @ by_posture + np.diag(self._stiffness(sample) ** 2)
-            own_pull = by_posture.T @ rest + self._stiffness(sample) ** 2 * self._away(
-                state, sample
-            )
-            cross = by_posture.T @ by_other
-            solved = np.linalg.solve(own, np.column_stack([cross, own_pull]))
-            schur += by_other.T @ by_other - cross.T @ solved[:, :-1]
-            pull += by_other.T @ rest - cross.T @ solved[:, -1]
-            kept.append(solved)
-        covariance = np.linalg.inv(schur)
-        change = -covariance @ pull
-        for sample, solved in enumerate(kept):
-            _move(human, state.postures[sample], -solved[:, -1] - solved[:, :-1] @ change)
-        self._apply(state, change)
-        return covariance
-
-    def _frame(
-        self, state: _State, human: Human, sample: int, shapes: Mapping[str, np.ndarray]
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Residuals of one frame over noise, and how they change with posture and parameters."""
-        data = mujoco.MjData(human.model)
-        data.qpos[:] = state.postures[sample]
-        mujoco.mj_kinematics(human.model, data)
-        mujoco.mj_comPos(human.model, data)
-        count, nv = len(self.targets), human.model.nv
-        rest, by_posture = np.zeros(6 * count), np.zeros((6 * count, nv))
-        by_other = np.zeros((6 * count, len(FREE) + 6 * count))
-        for number, (place, one) in enumerate(self.targets.items()):
-            site = human.model.site(f"sensor_{place}").id
-            rows, columns = slice(6 * number, 6 * number + 6), len(FREE) + 6 * number
-            matrix = data.site_xmat[site].reshape(3, 3)
-            seen = Rotation.from_quat(one.orientations[self.frames[sample]], scalar_first=True)
-            turned = (Rotation.from_matrix(matrix) * seen.inv()).as_rotvec()
-            apart = data.site_xpos[site] - one.positions[self.frames[sample]]
-            rest[rows] = [*(apart / NOISE_M), *(turned / NOISE_RAD)]
-            jacobian = np.zeros((6, nv))
-            mujoco.mj_jacSite(human.model, data, jacobian[:3], jacobian[3:], site)
-            by_posture[rows] = jacobian / np.repeat([NOISE_M, NOISE_RAD], 3)[:, None]
-            body = data.xmat[human.model.site_bodyid[site]].reshape(3, 3)
-            by_other[rows.start : rows.start + 3, columns : columns + 3] = body / NOISE_M
-            by_other[rows.start + 3 : rows.stop, columns + 3 : columns + 6] = matrix / NOISE_RAD
-            by_other[rows.start : rows.start + 3, : len(FREE)] = shapes[place][sample] / NOISE_M
-        return rest, by_posture, by_other
-
-    def _stiffness(self, sample: int) -> np.ndarray:
-        """One over the deviation of each degree of freedom from where it is expected."""
-        loose = np.full(66, 1.0 / (REFERENCE_RAD if sample == 0 else LOOSE_RAD))
-        loose[:6] = 1e-3
-        return loose
-
-    def _away(self, state: _State, sample: int) -> np.ndarray:
-        """How far each degree of freedom is from where it is expected."""
-        away = np.zeros(66)
-        expected = self.calibration.posture[ROOT_SIZE:] if sample == 0 else 0.0
-        away[6:] = state.postures[sample, ROOT_SIZE:] - expected
-        return away
-
-    def _priors(self, state: _State, human: Human) -> tuple[np.ndarray, np.ndarray]:
-        """What is known beforehand: measures by survey or tape, sensors near their places."""
-        size = len(FREE) + 6 * len(self.targets)
-        rows, rest = [], []
-        for number, name in enumerate(FREE):
-            row = np.zeros(size)
-            row[number] = 1.0 / self.prior.deviations[name]
-            rows.append(row)
-            rest.append((state.measures[name] - self.prior[name]) / self.prior.deviations[name])
-        moves = {name: _nominal(_varied(state.measures, name)) for name in FREE}
-        usual = _nominal(state.measures)
-        for number, place in enumerate(self.targets):
-            here = state.mounts[place].pose.translation - usual[place]
-            for axis in range(3):
-                row = np.zeros(size)
-                row[len(FREE) + 6 * number + axis] = 1.0 / PLACEMENT_M
-                for n, name in enumerate(FREE):
-                    row[n] = -(moves[name][place] - usual[place])[axis] / DELTA_M / PLACEMENT_M
-                rows.append(row)
-                rest.append(here[axis] / PLACEMENT_M)
-        matrix = np.array(rows)
-        turns = np.zeros(size)
-        for number in range(len(self.targets)):
-            turns[len(FREE) + 6 * number + 3 : len(FREE) + 6 * number + 6] = 1e-6
-        return matrix.T @ matrix + np.diag(turns), matrix.T @ np.array(rest)
-
-    def _apply(self, state: _State, change: np.ndarray) -> None:
-        values = {n: state.measures[n] + float(change[i]) for i, n in enumerate(FREE)}
-        state.measures = _with(state.measures, values, state.measures.deviations)
-        for number, place in enumerate(self.targets):
-            moved, turned = change[len(FREE) + 6 * number :][:6].reshape(2, 3)
-            pose = state.mounts[place].pose
-            state.mounts[place] = Mount(
-                place,
-                places()[place],
-                RigidTransform.from_components(
-                    pose.translation + moved, pose.rotation * Rotation.from_rotvec(turned)
-                ),
-            )
-
-
-DELTA_M = 1e-4
-"""Step of finite differences [m]."""
-
-
-def _by_measure(state: _State, samples: int) -> dict[str, np.ndarray]:
-    """Change of every sensor's place with every measure, by place: (samples, 3, measures)."""
-    names = [f"sensor_{each}" for each in state.mounts]
-    base = state.human.sites(state.postures, names)
-    out = {place: np.empty((samples, 3, len(FREE))) for place in state.mounts}
-    for number, name in enumerate(FREE):
-        varied = _State(_varied(state.measures, name), state.mounts, state.postures)
-        moved = varied.human.sites(state.postures, names)
-        for place in state.mounts:
-            step = moved[f"sensor_{place}"][0] - base[f"sensor_{place}"][0]
-            out[place][:, :, number] = step / DELTA_M
-    return out
-
-
-def _varied(measures: Measures, name: str) -> Measures:
-    return _with(measures, {name: measures[name] + DELTA_M}, measures.deviations)
-
-
-def _nominal(measures: Measures) -> dict[str, np.ndarray]:
-    """Nominal places of the sensors in their segments [m]."""
-    model = Human.of(measures).model
-    return {place: np.array(model.site(f"sensor_{place}").pos) for place in places()}
-
-
-def _with(
-    measures: Measures, values: Mapping[str, float], deviations: Mapping[str, float]
-) -> Measures:
-    changed = {**measures.values, **values}
-    return Measures(measures.sex, measures.age, changed, measures.given, deviations)
-
-
-def _move(human: Human, posture: np.ndarray, change: Sequence[float] | np.ndarray) -> None:
-    """Move a posture by a step of its degrees of freedom, within the hinges' ranges."""
-    mujoco.mj_integratePos(human.model, posture, np.asarray(change), 1.0)
-    low, high = human.ranges.T
-    posture[ROOT_SIZE:] = np.clip(posture[ROOT_SIZE:], low, high)
-
-
-OTHER_NAMES = {"pelvis": "l5", "sacrum": "l5", "neck_base": "neck"}
-"""What sensors are called besides the names of their places."""
-
-
 def worn(capture: Capture) -> dict[str, Stream]:
     """The streams of the sensors that the capture's first agent wears, by place on the body."""
-    out = {}
+    out: dict[str, Stream] = {}
     for sensor in capture.sensors:
         if capture.agent_of(sensor) == capture.agent.name:
-            sided = (
-                sensor.end_effector
-                if sensor.side == "none"
-                else f"{sensor.side}_{sensor.end_effector}"
-            )
-            for name in (sensor.name, OTHER_NAMES.get(sensor.name, ""), sided):
-                if name in places() and name not in out:
-                    out[name] = sensor.stream
-                    break
+            sided = "" if sensor.side == "none" else f"{sensor.side}_"
+            names = (sensor.name, OTHER_NAMES.get(sensor.name, ""), sided + sensor.end_effector)
+            place = next((each for each in names if each in places() and each not in out), None)
+            if place:
+                out[place] = sensor.stream
     return out
 
 
 def fit_capture(capture: Capture, *, angles: Mapping[str, float] | None = None) -> Fit:
     """The body of a capture's performer, fitted to the sensors it wears.
-
-    Where some sensor stays farther from its place than noise explains, limb lengths and the places
-    of the sensors are estimated from the motion, and the better of both fits is kept.
 
     Args:
         capture: Its first 0.4 s are the reference posture.
@@ -658,10 +382,10 @@ def fit_refined(human: Human, streams: Mapping[str, Stream], calibration: Calibr
     if worst_m(made) <= NOISE_M:
         return made
     try:
-        better = refine(made, streams, calibration)
+        measures, refined = refine(made, streams, calibration)
     except RefinementError:
         return made
-    again = fit(Human.of(better.measures), streams, better.calibration)
+    again = fit(Human.of(measures), streams, refined)
     kept = again if worst_m(again) < worst_m(made) else made
     return replace(kept, seconds=time.perf_counter() - began)
 
@@ -670,3 +394,180 @@ def worst_m(made: Fit) -> float:
     """Root mean square of the distance of that sensor from its place which fits worst [m]."""
     squares = (np.nanmean(np.square(metres)) for metres in made.residuals_m.values())
     return float(np.sqrt(max(squares)))
+
+
+def refine(
+    made: Fit, streams: Mapping[str, Stream], calibration: Calibration, *, samples: int = SAMPLES
+) -> tuple[Measures, Calibration]:
+    """Functional calibration: limb lengths and places of sensors from a motion that was fitted.
+
+    Arm circles and a reach decide lengths that a reference posture cannot: where a limb is longer
+    than assumed, no posture fits all sensors at once. Lengths, the places of the sensors and the
+    postures of some frames are estimated together by Gauss-Newton steps, each from its prior.
+
+    Args:
+        made: The motion fitted to the same sensors.
+        streams: By place, as recorded.
+        calibration: From the reference posture at the beginning.
+        samples: How many frames take part.
+
+    Returns:
+        The measures, each with its deviation after the motion was seen, and the calibration with
+        them.
+
+    Raises:
+        RefinementError: Fewer than ten frames have all the sensors.
+    """
+    targets = {place: target(streams[place]) for place in calibration.mounts}
+    seen = np.flatnonzero(np.min([each.weights for each in targets.values()], axis=0) >= 1.0)
+    if len(seen) < 10:
+        raise RefinementError(f"{len(seen)} frames with all of {sorted(targets)}; ten are needed")
+    frames = np.unique(seen[np.linspace(0, len(seen) - 1, samples).astype(int)])
+    estimate = _Estimate(targets, frames, calibration, made.human.measures, made.motion[frames])
+    for _ in range(ROUNDS):
+        covariance = estimate.step()
+    after = {name: float(np.sqrt(covariance[n, n])) for n, name in enumerate(FREE)}
+    deviations = {**made.human.measures.deviations, **after}
+    measures = _changed(estimate.measures, {}, deviations)
+    return measures, Calibration(estimate.mounts, calibration.posture)
+
+
+class _Estimate:
+    """Measures, mounts and postures of some frames, with targets and priors."""
+
+    def __init__(
+        self,
+        targets: Mapping[str, Target],
+        frames: np.ndarray,
+        calibration: Calibration,
+        prior: Measures,
+        postures: Float[np.ndarray, "samples posture"],
+    ) -> None:
+        self.targets, self.frames, self.reference = targets, frames, calibration.posture
+        self.prior = self.measures = prior
+        self.mounts, self.postures = dict(calibration.mounts), postures.copy()
+        self.postures[0] = calibration.posture
+
+    def step(self) -> Float[np.ndarray, "parameters parameters"]:
+        """One Gauss-Newton step with the postures eliminated; returns the covariance."""
+        human = mounted(Human.of(self.measures), self.mounts)
+        shapes = self._by_measure(human)
+        schur, pull = self._priors()
+        kept = []
+        for sample in range(len(self.frames)):
+            rest, by_posture, by_other = self._frame(human, sample, shapes)
+            # One over the deviation of each hinge from where it is expected, and how far it is.
+            loose = np.full(66, 1.0 / (REFERENCE_RAD if sample == 0 else LOOSE_RAD))
+            loose[:6], away = 1e-3, np.zeros(66)
+            expected = self.reference[ROOT_SIZE:] if sample == 0 else 0.0
+            away[6:] = self.postures[sample, ROOT_SIZE:] - expected
+            own = by_posture.T @ by_posture + np.diag(loose**2)
+            own_pull = by_posture.T @ rest + loose**2 * away
+            cross = by_posture.T @ by_other
+            solved = np.linalg.solve(own, np.column_stack([cross, own_pull]))
+            schur += by_other.T @ by_other - cross.T @ solved[:, :-1]
+            pull += by_other.T @ rest - cross.T @ solved[:, -1]
+            kept.append(solved)
+        covariance = np.linalg.inv(schur)
+        change = -covariance @ pull
+        low, high = human.ranges.T
+        for posture, solved in zip(self.postures, kept, strict=True):
+            turned = -solved[:, -1] - solved[:, :-1] @ change
+            mujoco.mj_integratePos(human.model, posture, np.asarray(turned), 1.0)
+            posture[ROOT_SIZE:] = np.clip(posture[ROOT_SIZE:], low, high)
+        self._apply(change)
+        return covariance
+
+    def _frame(
+        self, human: Human, sample: int, shapes: Mapping[str, np.ndarray]
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Residuals of one frame over noise, and how they change with posture and parameters."""
+        data = mujoco.MjData(human.model)
+        data.qpos[:] = self.postures[sample]
+        mujoco.mj_kinematics(human.model, data)
+        mujoco.mj_comPos(human.model, data)
+        count, nv = len(self.targets), human.model.nv
+        rest, by_posture = np.zeros(6 * count), np.zeros((6 * count, nv))
+        by_other = np.zeros((6 * count, len(FREE) + 6 * count))
+        for number, (place, one) in enumerate(self.targets.items()):
+            site = human.model.site(f"sensor_{place}").id
+            rows, columns = slice(6 * number, 6 * number + 6), len(FREE) + 6 * number
+            matrix = data.site_xmat[site].reshape(3, 3)
+            seen = Rotation.from_quat(one.orientations[self.frames[sample]], scalar_first=True)
+            turned = (Rotation.from_matrix(matrix) * seen.inv()).as_rotvec()
+            apart = data.site_xpos[site] - one.positions[self.frames[sample]]
+            rest[rows] = [*(apart / NOISE_M), *(turned / NOISE_RAD)]
+            jacobian = np.zeros((6, nv))
+            mujoco.mj_jacSite(human.model, data, jacobian[:3], jacobian[3:], site)
+            by_posture[rows] = jacobian / np.repeat([NOISE_M, NOISE_RAD], 3)[:, None]
+            body = data.xmat[human.model.site_bodyid[site]].reshape(3, 3)
+            by_other[rows.start : rows.start + 3, columns : columns + 3] = body / NOISE_M
+            by_other[rows.start + 3 : rows.stop, columns + 3 : columns + 6] = matrix / NOISE_RAD
+            by_other[rows.start : rows.start + 3, : len(FREE)] = shapes[place][sample] / NOISE_M
+        return rest, by_posture, by_other
+
+    def _priors(self) -> tuple[np.ndarray, np.ndarray]:
+        """What is known beforehand: measures by survey or tape, sensors near their places."""
+        size = len(FREE) + 6 * len(self.targets)
+        rows, rest = [], []
+        for number, name in enumerate(FREE):
+            row = np.zeros(size)
+            row[number] = 1.0 / self.prior.deviations[name]
+            rows.append(row)
+            rest.append((self.measures[name] - self.prior[name]) / self.prior.deviations[name])
+        moves = {name: _nominal(self._varied(name)) for name in FREE}
+        usual = _nominal(self.measures)
+        for number, place in enumerate(self.targets):
+            here = self.mounts[place].pose.translation - usual[place]
+            for axis in range(3):
+                row = np.zeros(size)
+                row[len(FREE) + 6 * number + axis] = 1.0 / PLACEMENT_M
+                for n, name in enumerate(FREE):
+                    row[n] = -(moves[name][place] - usual[place])[axis] / DELTA_M / PLACEMENT_M
+                rows.append(row)
+                rest.append(here[axis] / PLACEMENT_M)
+        matrix = np.array(rows)
+        turns = np.zeros(size)
+        for number in range(len(self.targets)):
+            turns[len(FREE) + 6 * number + 3 : len(FREE) + 6 * number + 6] = 1e-6
+        return matrix.T @ matrix + np.diag(turns), matrix.T @ np.array(rest)
+
+    def _apply(self, change: np.ndarray) -> None:
+        values = {n: self.measures[n] + float(change[i]) for i, n in enumerate(FREE)}
+        self.measures = _changed(self.measures, values, self.measures.deviations)
+        for number, place in enumerate(self.targets):
+            moved, turned = change[len(FREE) + 6 * number :][:6].reshape(2, 3)
+            pose = self.mounts[place].pose
+            spot, turn = pose.translation + moved, pose.rotation * Rotation.from_rotvec(turned)
+            pose = RigidTransform.from_components(spot, turn)
+            self.mounts[place] = Mount(place, places()[place], pose)
+
+    def _by_measure(self, human: Human) -> dict[str, Float[np.ndarray, "samples 3 measures"]]:
+        """Change of every sensor's place with every measure, by place."""
+        names = [f"sensor_{each}" for each in self.mounts]
+        base = human.sites(self.postures, names)
+        out = {place: np.empty((len(self.frames), 3, len(FREE))) for place in self.mounts}
+        for number, name in enumerate(FREE):
+            varied = mounted(Human.of(self._varied(name)), self.mounts)
+            moved = varied.sites(self.postures, names)
+            for place in self.mounts:
+                step = moved[f"sensor_{place}"][0] - base[f"sensor_{place}"][0]
+                out[place][:, :, number] = step / DELTA_M
+        return out
+
+    def _varied(self, name: str) -> Measures:
+        values = {name: self.measures[name] + DELTA_M}
+        return _changed(self.measures, values, self.measures.deviations)
+
+
+def _nominal(measures: Measures) -> dict[str, np.ndarray]:
+    """Nominal places of the sensors in their segments [m]."""
+    model = Human.of(measures).model
+    return {place: np.array(model.site(f"sensor_{place}").pos) for place in places()}
+
+
+def _changed(
+    measures: Measures, values: Mapping[str, float], deviations: Mapping[str, float]
+) -> Measures:
+    changed = {**measures.values, **values}
+    return Measures(measures.sex, measures.age, changed, measures.given, deviations)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from jaxtyping import Float
@@ -12,12 +13,11 @@ from capar.body.human import Human, site_rows
 from capar.model import geometry
 from capar.model.capture import Stream
 from capar.model.errors import CaparError, UnknownNameError
-from capar.model.geometry import runs
 from extractors.signals.filters import fill_gaps, lowpass, lowpass_orientations
 from extractors.thresholds import Thresholds
 
 REFERENCE_S = 0.4
-"""How long the reference posture is held at the start [s]."""
+"""How long the reference posture is held at the start [s] (thesis 3.1)."""
 
 PLACEMENT_M = 0.010
 """Deviation of where a sensor is strapped from its nominal place, an axis [m] (estimate)."""
@@ -31,6 +31,12 @@ CHAINS = {
     "right_foot": ("thigh", "shank"),
 }
 """The measures that decide where a segment is relative to the pelvis, for the right side."""
+
+CUTOFF_HZ = 8.0
+"""Cutoff of the zero-phase filter [Hz]: above what hands do, below most of a tracker's noise."""
+
+GAP_S, FADE_S = 0.1, 0.1
+"""Losses that are interpolated (spec 3), and how long longer ones take to fade out or in [s]."""
 
 
 class CalibrationError(CaparError):
@@ -51,18 +57,13 @@ class Mount:
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """The sensors on the body, and how it stood."""
+    """The sensors on the body by place, and the reference posture where the recording has it."""
 
     mounts: Mapping[str, Mount]
-    """By place."""
-
     posture: Float[np.ndarray, "posture"]
-    """The reference posture, where the recording has it."""
-
-    misplaced: Mapping[str, float]
-    """Distance of each sensor from its nominal place on the body [m]."""
 
 
+@cache
 def places() -> dict[str, str]:
     """The segment of every place of a sensor."""
     rows = (row for row in site_rows() if row.get("sensor"))
@@ -75,16 +76,17 @@ def calibrate(
     *,
     angles: Mapping[str, float] | None = None,
     placed: tuple[Float[np.ndarray, "3"], float] | None = None,
-    span_s: float = REFERENCE_S,
 ) -> Calibration:
     """Find where each sensor sits, from its pose while the body holds a known posture.
 
+    A sensor is turned as seen. That it is not at its nominal place comes of where it was strapped
+    and of measures that are not the person's; each takes its share by its variance.
+
     Args:
         human: The body.
-        streams: Of any of the sensors, by place.
+        streams: Of any of the sensors, by place; the posture is held in the first 0.4 s.
         angles: The reference posture [rad]; arms down, palms inwards where None.
         placed: Where the feet are [m] and the heading [rad]; None fits the body into the sensors.
-        span_s: How long the posture is held, from the first frame on [s].
 
     Raises:
         CalibrationError: A sensor is lost throughout, or too few are there to place the body.
@@ -93,38 +95,39 @@ def calibrate(
     for place in streams:
         if place not in places():
             raise UnknownNameError("place of a sensor", place, places())
-    seen = {place: _still(place, stream, span_s) for place, stream in streams.items()}
+    seen = {place: _still(place, stream) for place, stream in streams.items()}
     posture = _placed(human, seen, angles, placed)
     nominal = human.sites(posture[None], [f"sensor_{each}" for each in seen])
     segments = human.sites(posture[None], {places()[each] for each in seen})
-    mounts, misplaced = {}, {}
+    mounts = {}
     for place, pose in seen.items():
         segment = places()[place]
         frame = geometry.transforms(segments[segment][0][0], segments[segment][1][0])
         usual = frame.inv().apply(nominal[f"sensor_{place}"][0][0])
-        mounts[place], misplaced[place] = _mount(
-            place, segment, frame.inv() * pose, usual, human.measures
-        )
-    return Calibration(mounts, posture, misplaced)
+        own = frame.inv() * pose
+        share = PLACEMENT_M**2 / (PLACEMENT_M**2 + _chain_variance(segment, human.measures))
+        spot = usual + share * (own.translation - usual)
+        mounts[place] = Mount(place, segment, RigidTransform.from_components(spot, own.rotation))
+    return Calibration(mounts, posture)
 
 
-def mounted(human: Human, calibration: Calibration) -> Human:
-    """The same body with its sensors' sites where the calibration found them."""
-    spec_model = human.model.__copy__()
-    for place, mount in calibration.mounts.items():
-        number = spec_model.site(f"sensor_{place}").id
-        spec_model.site_pos[number] = mount.pose.translation
-        spec_model.site_quat[number] = mount.pose.rotation.as_quat(scalar_first=True)
-        spec_model.site_sameframe[number] = 0
-    return Human(human.measures, spec_model)
+def mounted(human: Human, mounts: Mapping[str, Mount]) -> Human:
+    """The same body with its sensors' sites at these mounts."""
+    model = human.model.__copy__()
+    for place, mount in mounts.items():
+        number = model.site(f"sensor_{place}").id
+        model.site_pos[number] = mount.pose.translation
+        model.site_quat[number] = mount.pose.rotation.as_quat(scalar_first=True)
+        model.site_sameframe[number] = 0
+    return Human(human.measures, model)
 
 
-def _still(place: str, stream: Stream, span_s: float) -> RigidTransform:
+def _still(place: str, stream: Stream) -> RigidTransform:
     """The mean pose during the reference posture."""
-    known = (stream.times - stream.times[0] <= span_s) & ~stream.lost
+    known = (stream.times - stream.times[0] <= REFERENCE_S) & ~stream.lost
     if not known.any():
         raise CalibrationError(
-            f"sensor {place!r} is lost throughout the first {span_s:g} s; "
+            f"sensor {place!r} is lost throughout the first {REFERENCE_S:g} s; "
             "the reference posture is to be held there"
         )
     turn = Rotation.from_quat(stream.orientations[known], scalar_first=True).mean()
@@ -137,58 +140,33 @@ def _placed(
     angles: Mapping[str, float] | None,
     placed: tuple[Float[np.ndarray, "3"], float] | None,
 ) -> Float[np.ndarray, "posture"]:
-    """The reference posture where the sensors see it: turned and moved, not tilted."""
+    """The reference posture where the sensors see it: turned and moved, not tilted.
+
+    The turn and shift fit the sites to the sensors by weighted least squares.
+    """
     if placed is not None:
         return human.posture(angles, place=placed[0], heading=placed[1])
     if len(seen) < 2:
         raise CalibrationError(
             f"{len(seen)} sensor; two or more place the body, or give where it stands"
         )
-    standing = human.posture(angles)
-    sites = human.sites(standing[None], [f"sensor_{each}" for each in seen])
+    sites = human.sites(human.posture(angles)[None], [f"sensor_{each}" for each in seen])
     body = np.array([sites[f"sensor_{each}"][0][0] for each in seen])
     world = np.array([each.translation for each in seen.values()])
-    spread = [PLACEMENT_M**2 + _chain(places()[each], human.measures) for each in seen]
-    heading, moved = _upright_fit(body, world, 1.0 / np.array(spread))
-    return human.posture(angles, place=moved, heading=heading)
-
-
-def _upright_fit(
-    body: Float[np.ndarray, "points 3"],
-    world: Float[np.ndarray, "points 3"],
-    weights: Float[np.ndarray, "points"],
-) -> tuple[float, Float[np.ndarray, "3"]]:
-    """Turn about z [rad] and shift [m] that take points to points, by weighted least squares."""
+    spread = [PLACEMENT_M**2 + _chain_variance(places()[each], human.measures) for each in seen]
+    weights = 1.0 / np.array(spread)
     share = weights / weights.sum()
     middle, goal = share @ body, share @ world
     (a, b), (c, d) = (body - middle)[:, :2].T, (world - goal)[:, :2].T
     heading = float(np.arctan2(share @ (a * d - b * c), share @ (a * c + b * d)))
-    turned = Rotation.from_euler("z", heading).apply(middle)
-    return heading, goal - turned
+    moved = goal - Rotation.from_euler("z", heading).apply(middle)
+    return human.posture(angles, place=moved, heading=heading)
 
 
-def _chain(segment: str, measures: Measures) -> float:
+def _chain_variance(segment: str, measures: Measures) -> float:
     """Variance of where a segment is relative to the pelvis, from that of the measures [m2]."""
     names = CHAINS.get(segment.replace("left_", "right_"), ())
     return sum(measures.deviations[each] ** 2 for each in names)
-
-
-def _mount(
-    place: str,
-    segment: str,
-    pose: RigidTransform,
-    usual: Float[np.ndarray, "3"],
-    measures: Measures,
-) -> tuple[Mount, float]:
-    """A mount: its turn as seen, its place between the nominal and the seen one.
-
-    How far it lies from the nominal place comes of where it was strapped and of measures that
-    are not the person's; each takes its share by its variance.
-    """
-    moved = pose.translation - usual
-    share = PLACEMENT_M**2 / (PLACEMENT_M**2 + _chain(segment, measures))
-    seat = RigidTransform.from_components(usual + share * moved, pose.rotation)
-    return Mount(place, segment, seat), float(np.linalg.norm(moved))
 
 
 @dataclass(frozen=True)
@@ -268,36 +246,17 @@ def recorded(
     tracker: Tracker,
     rng: np.random.Generator,
 ) -> Stream:
-    """A pose over time as a tracker records it."""
+    """A pose over time as a tracker records it; neither the first nor the last frame is lost."""
     spots = poses.translation + rng.normal(0.0, 1.0, (len(times), 3)) * tracker.noise_m
     shake = Rotation.from_rotvec(rng.normal(0.0, 1.0, (len(times), 3)) * tracker.noise_rad)
     turns = (poses.rotation * shake).as_quat(scalar_first=True)
-    lost = _dropouts(times, tracker, rng)
-    spots[lost], turns[lost] = np.nan, np.nan
-    return Stream(times, spots, turns)
-
-
-def _dropouts(
-    times: Float[np.ndarray, "frames"], tracker: Tracker, rng: np.random.Generator
-) -> np.ndarray:
-    """Frames that are lost; neither the first nor the last is."""
-    lost = np.zeros(len(times), dtype=bool)
-    span = times[-1] - times[0]
+    lost, span = np.zeros(len(times), dtype=bool), times[-1] - times[0]
     for _ in range(int(rng.poisson(tracker.dropouts_per_s * span))):
         start = times[0] + rng.uniform(0.0, span)
         lost |= (times >= start) & (times < start + rng.exponential(tracker.dropout_s))
     lost[[0, -1]] = False
-    return lost
-
-
-CUTOFF_HZ = 8.0
-"""Cutoff of the zero-phase filter [Hz]: above what hands do, below most of a tracker's noise."""
-
-GAP_S = 0.1
-"""Losses shorter than this are interpolated (spec 3) [s]."""
-
-FADE_S = 0.1
-"""How long a sensor takes to regain its full weight after a longer loss [s]."""
+    spots[lost], turns[lost] = np.nan, np.nan
+    return Stream(times, spots, turns)
 
 
 @dataclass(frozen=True, eq=False)
@@ -311,11 +270,11 @@ class Target:
     """w x y z; NaN likewise."""
 
     weights: Float[np.ndarray, "frames"]
-    """1 where it is known, 0 where it is lost, in between beside a loss [1]."""
+    """1 where it is known, 0 where it is lost, in between next to a loss [1]."""
 
 
 def target(stream: Stream, *, cutoff_hz: float | None = CUTOFF_HZ) -> Target:
-    """The target that a sensor's stream makes.
+    """The target that a sensor's stream makes: gaps filled, noise filtered.
 
     Args:
         stream: As it was recorded.
@@ -334,9 +293,9 @@ def target(stream: Stream, *, cutoff_hz: float | None = CUTOFF_HZ) -> Target:
 
 
 def _weights(stream: Stream) -> Float[np.ndarray, "frames"]:
-    """Weights that rise and fall smoothly beside a loss; the ends of a recording do not fade."""
+    """Weights that rise and fall smoothly next to a loss; the ends of a recording do not fade."""
     out = np.where(stream.lost, 0.0, 1.0)
-    for first, last in runs(stream.lost):
+    for first, last in geometry.runs(stream.lost):
         before = (stream.times[max(first - 1, 0)] - stream.times) / FADE_S
         after = (stream.times - stream.times[min(last + 1, len(out) - 1)]) / FADE_S
         near = np.where(np.arange(len(out)) < first, before, after)

@@ -1,13 +1,13 @@
 """The mannequin: capsules, ellipsoids and boxes about the segments, and their surfaces."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 import trimesh
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import Measures, is_right, mirrored, table
 from capar.body.skeleton import BALL, HEEL, Segment, eyes_between, skeleton
@@ -44,7 +44,7 @@ class Form:
     """Half sizes [m]; of a capsule its radius, then half the length of its axis, then 0."""
 
     colour: str
-    axis: Float[np.ndarray, "3"]
+    axis: Float[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))
     """Direction of a capsule's axis [1]; other forms lie along the world's axes, standing."""
 
 
@@ -65,50 +65,38 @@ def _row_form(row: dict[str, Any], m: Measures, segments: Mapping[str, Segment])
         return Form(row["body"], "capsule", sum(ends) / 2, half, row["colour"], ends[1] - ends[0])
     broad = m["shoulder_breadth"] / tall / USUAL_BREADTH if row.get("broad") else 1.0
     half = np.array(row["half"]) * tall * np.array([wide, max(wide * broad, wide), 1.0])
-    return Form(
-        row["body"], row["type"], row["at"] * along + offset, half, row["colour"], np.zeros(3)
-    )
+    return Form(row["body"], row["type"], row["at"] * along + offset, half, row["colour"])
 
 
 def _head(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
-    tall, none = m["stature"], np.zeros(3)
+    tall, long = m["stature"], m["head_length"]
     origin, eyes = segments["head"].origin, eyes_between(m)
     chin = m["eye_height"] - CHIN_BELOW_EYES * tall
-    skull = 0.82 * (tall - chin)
-    half = np.array([0.5 * m["head_length"], 0.5 * m["head_breadth"], 0.5 * skull])
-    centre = np.array([origin[0], 0.0, tall - half[2]])
-    yield Form("head", "ellipsoid", centre - origin, half, "skin", none)
-    jaw = np.array([0.34, 0.40, 0.30]) * [m["head_length"], m["head_breadth"], tall - chin]
-    place = np.array([origin[0] + 0.12 * m["head_length"], 0.0, chin + jaw[2]])
-    yield Form("head", "ellipsoid", place - origin, jaw, "skin", none)
+    half = np.array([0.5 * long, 0.5 * m["head_breadth"], 0.5 * (0.82 * (tall - chin))])
+    jaw = np.array([0.34, 0.40, 0.30]) * [long, m["head_breadth"], tall - chin]
     hair = half * [1.02, 1.05, 0.72]
-    crown = np.array([origin[0] - 0.06 * m["head_length"], 0.0, tall - hair[2]])
-    yield Form("head", "ellipsoid", crown - origin, hair, "hair", none)
-    nose = eyes + np.array([0.04 * m["head_length"], 0.0, -0.022 * tall])
-    yield Form(
-        "head", "ellipsoid", nose - origin, np.array([0.010, 0.007, 0.013]) * tall, "skin", none
-    )
-    ball = 0.062 * m["head_length"]
-    yield Form("right_eye", "ellipsoid", none, np.full(3, ball), "white", none)
-    yield Form(
-        "right_eye",
-        "ellipsoid",
-        np.array([0.75 * ball, 0, 0]),
-        np.full(3, 0.5 * ball),
-        "pupil",
-        none,
-    )
+    nose = np.array([0.010, 0.007, 0.013]) * tall
+    for centre, sizes, colour in (
+        (np.array([origin[0], 0.0, tall - half[2]]), half, "skin"),
+        (np.array([origin[0] + 0.12 * long, 0.0, chin + jaw[2]]), jaw, "skin"),
+        (np.array([origin[0] - 0.06 * long, 0.0, tall - hair[2]]), hair, "hair"),
+        (eyes + np.array([0.04 * long, 0.0, -0.022 * tall]), nose, "skin"),
+    ):
+        yield Form("head", "ellipsoid", centre - origin, sizes, colour)
+    ball, ahead = 0.062 * long, np.array([0.75 * (0.062 * long), 0, 0])
+    yield Form("right_eye", "ellipsoid", np.zeros(3), np.full(3, ball), "white")
+    yield Form("right_eye", "ellipsoid", ahead, np.full(3, 0.5 * ball), "pupil")
 
 
 def _hand(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
-    long, none = m["hand_length"], np.zeros(3)
+    long = m["hand_length"]
     thick = {"right_hand": PALM[1], "right_fingers": 0.052, "right_fingertips": 0.045}
     wide = {"right_hand": PALM[0], "right_fingers": 0.205, "right_fingertips": 0.175}
     for name, thickness in thick.items():
         along = segments[name].tip - segments[name].origin
         sizes = np.array([wide[name] * long, thickness * long, 0.5 * abs(along[2]) + 0.02 * long])
         kind = "box" if name != "right_fingertips" else "ellipsoid"
-        yield Form(name, kind, 0.5 * along, sizes, "skin", none)
+        yield Form(name, kind, 0.5 * along, sizes, "skin")
     along = segments["right_thumb"].tip - segments["right_thumb"].origin
     half = np.array([0.055 * long, 0.5 * float(np.linalg.norm(along)), 0.0])
     yield Form("right_thumb", "capsule", 0.5 * along, half, "skin", along)
@@ -121,21 +109,20 @@ def palm_centre(m: Measures) -> Float[np.ndarray, "3"]:
 
 def _foot(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
     long, wide, high = m["foot_length"], m["foot_breadth"], m["ankle_height"]
-    none = np.zeros(3)
-    half = np.array([0.5 * (HEEL + BALL) * long, 0.42 * wide, 0.12 * high])
-    centre = np.array([0.5 * (BALL - HEEL) * long, 0.0, half[2] - high])
-    yield Form("right_foot", "box", centre, half, "shoe", none)
+    sole = np.array([0.5 * (HEEL + BALL) * long, 0.42 * wide, 0.12 * high])
+    centre = np.array([0.5 * (BALL - HEEL) * long, 0.0, sole[2] - high])
+    yield Form("right_foot", "box", centre, sole, "shoe")
     heel = np.array([0.55 * HEEL * long, 0.36 * wide, 0.45 * high])
     centre = np.array([-HEEL * long + heel[0], 0.0, heel[2] - high])
-    yield Form("right_foot", "ellipsoid", centre, heel, "shoe", none)
+    yield Form("right_foot", "ellipsoid", centre, heel, "shoe")
     instep = np.array([0.22 * long, 0.36 * wide, 0.55 * high])
-    yield Form(
-        "right_foot", "ellipsoid", np.array([0.06 * long, 0.0, -0.45 * high]), instep, "shoe", none
-    )
+    centre = np.array([0.06 * long, 0.0, -0.45 * high])
+    yield Form("right_foot", "ellipsoid", centre, instep, "shoe")
     toes = segments["right_toes"]
     half = np.array([1.05 * (toes.tip - toes.origin)[0], 0.42 * wide, 0.30 * high])
-    low = half[2] - toes.origin[2]
-    yield Form("right_toes", "ellipsoid", np.array([0.0, 0.0, low]), half, "shoe", none)
+    yield Form(
+        "right_toes", "ellipsoid", np.array([0.0, 0.0, half[2] - toes.origin[2]]), half, "shoe"
+    )
 
 
 def _mirror(form: Form) -> Form:
@@ -179,3 +166,8 @@ def segment_surface(measures: Measures, segments: tuple[str, ...], frame: str) -
             parts.append(mesh)
     mesh = sum(parts[1:], parts[0])
     return Shape(np.array(mesh.vertices), np.array(mesh.faces), description=" and ".join(segments))
+
+
+def moved(shape: Shape, pose: RigidTransform) -> Shape:
+    """The same surface in another frame."""
+    return Shape(pose.apply(shape.vertices), np.array(shape.faces), description=shape.description)

@@ -43,19 +43,19 @@ def fit(
 
     To sensors it is fitted again, with limb lengths from the motion, where that is needed.
     """
-    from capar.body.body_fitting import fit_body, remarks_on
+    from capar.body.body_fitting import fit_body, fit_warnings
     from extractors.readers.bundle.capture_toml import read_capture
 
     recorded = read_capture(capture)
     made = fit_body(capture, recorded)
-    remarks = remarks_on(capture, recorded, made)
+    warnings = fit_warnings(capture, recorded, made)
     _write(made, {"bvh": bvh, "glb": glb, "c3d": c3d, "npz": npz, "csv": csv, "mjcf": mjcf})
     if as_json:
-        typer.echo(json.dumps({**_answer(made), "remarks": remarks}, indent=2))
+        typer.echo(json.dumps({**_answer(made), "warnings": warnings}, indent=2))
     else:
         _tell(made)
-        for remark in remarks:
-            typer.echo(f"note: {remark}")
+        for warning in warnings:
+            typer.echo(f"warning: {warning}")
 
 
 def _write(made: "Fit", wanted: "Mapping[str, Path | None]") -> None:

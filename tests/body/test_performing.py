@@ -1,10 +1,12 @@
-"""Virtual performers do what their scripts say, and their captures say what was done."""
+"""Virtual performers do what their scripts say, and what they do is observed."""
 
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from virtual_bodies.drinking import drinking, steps_of
+from virtual_bodies.looking import fixations, share_told
 
 from capar import regeneration
 from capar.body.anthropometry import ready_made
@@ -13,17 +15,23 @@ from capar.body.human import Human
 from capar.body.performing import Performance, PerformanceError, perform
 from capar.body.recording import record, truth_of, write_bundle
 from capar.body.scenes import Scene, Thing, box, cup, scene, table
+from capar.body.scripted_actions import action_capture, performed
 from capar.body.scripts import (
+    GRAVITY_MPS2,
     Script,
+    Toss,
     drink,
     lift_with_both_hands,
-    reach_and_return,
     sip,
     slide,
+    slowed,
+    tossed,
     touch,
 )
 from capar.body.sensors import PERFECT, Tracker
+from capar.model.capture import Capture
 from capar.model.errors import UnknownNameError
+from capar.pipelines.observation import observe
 from capar.regeneration.collisions import Pair, Surroundings
 from extractors.readers.bundle.capture_toml import read_capture
 
@@ -45,7 +53,7 @@ SCRIPTS: dict[str, Script] = {
     "drink": drink("mug"),
     "sip": sip("mug"),
     "touch": touch("crate"),
-    "reach": reach_and_return("crate", side="left"),
+    "reach": touch("crate", side="left", seconds=0.25),
     "slide": slide("mug", (0.0, 0.12, 0.0)),
     "lift": lift_with_both_hands("crate", height=0.2),
 }
@@ -80,14 +88,6 @@ def test_every_agent_does_every_action_like_a_body(acted: Performance) -> None:
         assert np.ptp(spots, axis=0).max() < 0.004
     heights = [human.centre_of_mass(posture)[:2] for posture in motion[::25]]
     assert np.ptp(heights, axis=0).max() < 0.08, "the weight stays over the feet"
-
-
-def test_held_things_stay_in_the_hand(acted: Performance) -> None:
-    for phase, (_, start, end) in zip(acted.script, acted.phases, strict=True):
-        now = (acted.times >= start) & (acted.times < end)
-        for side, hand in phase.hands.items():
-            if hand.does == "holds":
-                assert acted.slip_m[side][now].max() < 0.003
 
 
 def test_what_is_not_held_stays_where_it_was(acted: Performance) -> None:
@@ -151,17 +151,6 @@ def test_a_drink_meets_the_mouth_and_ends_where_it_began() -> None:
     np.testing.assert_allclose(last, acted.scene.thing("mug").place, atol=1e-9)
 
 
-def test_a_sip_keeps_the_rim_at_the_mouth_while_the_mug_is_tipped() -> None:
-    acted = _act("woman", "sip")
-    start, end = next(each[1:] for each in acted.phases if each[0] == "drink")
-    (sipped,) = [pair[2:] for pair in truth_of(acted).contacts if pair[:2] == ("mug", "head")]
-    assert sipped[0] <= start + 0.05
-    assert sipped[1] >= end - 0.05
-    now = (acted.times >= start) & (acted.times < end)
-    turns = acted.things["mug"][now].rotation
-    assert (turns[0].inv() * turns[-1]).magnitude() > np.radians(15.0)
-
-
 def test_hands_move_with_one_bell_of_speed_to_what_they_reach_for() -> None:
     acted = _act("man", "touch")
     start, end = next(each[1:] for each in acted.phases if each[0] == "reach")
@@ -213,3 +202,130 @@ def test_what_cannot_be_reached_is_refused_with_the_distance() -> None:
         perform(human, far, slide("mug", (0.1, 0.0, 0.0)), rate_hz=20.0)
     with pytest.raises(UnknownNameError, match="no thing 'cup'"):
         perform(human, far, touch("cup"), rate_hz=20.0)
+
+
+FAST_HZ = 60.0
+
+
+@pytest.mark.parametrize("who", ["man", "child"])
+def test_between_the_hands_only_gravity_moves_it(who: str) -> None:
+    made = performed("toss", who, rate_hz=FAST_HZ)
+    ((start, end),) = [(start, end) for name, start, end in made.phases if name == "fly"]
+    first, last = (round(at * FAST_HZ) - 1 for at in (start, end))
+    spots = made.things["mug"].translation[first : last + 1]
+    assert len(spots) > 10
+    bent = np.diff(spots, n=2, axis=0) * FAST_HZ**2
+    np.testing.assert_allclose(bent, np.tile(GRAVITY_MPS2, (len(bent), 1)), atol=1e-6)
+
+
+@pytest.mark.parametrize("who", ["man", "woman", "child"])
+def test_it_is_observed_as_thrown_by_one_hand_and_caught_by_the_other(who: str) -> None:
+    seen = observe(action_capture("toss", who, rate_hz=FAST_HZ), rules="extended")
+    names = {
+        link.ee: [part.name for part in link.segments if part.name in {"Throw", "Catch"}]
+        for link in seen.links
+    }
+    assert names == {"right_hand": ["Throw"], "left_hand": ["Catch"]}
+
+
+def test_a_swing_begins_and_ends_with_its_velocities() -> None:
+    toss = Toss(start=(0.2, 0.0, -0.4), end=(0.0, 1.1, 1.4))
+    by, seconds, step = (0.0, 0.3, 0.2), 0.4, 1e-5
+    places = [tossed(toss, by, seconds, at / seconds) for at in (0.0, step, 0.4 - step, 0.4)]
+    np.testing.assert_allclose(places[0], 0.0, atol=1e-12)
+    np.testing.assert_allclose(places[-1], by, atol=1e-12)
+    np.testing.assert_allclose(places[1] / step, toss.start, atol=1e-3)
+    np.testing.assert_allclose((places[3] - places[2]) / step, toss.end, atol=1e-3)
+
+
+def test_a_hand_that_lets_go_slows_down_evenly_and_stays() -> None:
+    velocity = (0.0, 1.0, 2.0)
+    np.testing.assert_allclose(slowed(velocity, 0.1, 0.1), [0.0, 0.05, 0.1])
+    np.testing.assert_allclose(slowed(velocity, 0.5, 0.1), [0.0, 0.05, 0.1])
+    np.testing.assert_allclose(slowed(velocity, 1e-6, 0.1), np.array(velocity) * 1e-6, rtol=1e-4)
+
+
+STEPS = {
+    "extended": (
+        "Reach(mug)", "Touch(mug)", "MoveObjTo(mug, head)", "TouchWith(mug, head)",
+        "MoveObjTo(mug, table)", "TouchWith(mug, table)", "ResumePosture(mug)",
+    ),
+    "thesis": (
+        "Reach(mug)", "TouchWith(mug, table)", "MoveObjTo(mug, head)", "TouchWith(mug, head)",
+        "MoveObjTo(mug, table)", "TouchWith(mug, table)", "ResumePosture(mug)",
+    ),
+}  # fmt: skip
+"""What the script asks for: it holds the mug for 0.3 s before it is raised, and at the mouth.
+
+A support that bears the mug since before it was taken is no subordinate in ``extended`` alone.
+"""
+
+
+SIPS = {
+    "extended": (
+        "Reach(mug)", "MoveObjTo(mug, head)", "Drink(mug, head)", "MoveObjTo(mug, table)",
+        "TouchWith(mug, table)", "ResumePosture(mug)",
+    ),
+    "thesis": (
+        "Reach(mug)", "MoveObjTo(mug, head)", "MoveObj(mug, head)", "MoveObjTo(mug, table)",
+        "TouchWith(mug, table)", "ResumePosture(mug)",
+    ),
+}  # fmt: skip
+"""The published steps (thesis 5.2.1); Drink is a MoveObj."""
+
+SLOW_CLOCK = pytest.mark.xfail(
+    strict=True,
+    reason="at 30 Hz a child's hold of the mug lies 0.13 s between crossings; steps take 0.15 s",
+)
+TRIALS = [
+    pytest.param("woman", 1, 30.0, "extended"),
+    pytest.param("woman", 1, 30.0, "thesis"),
+    pytest.param("child", 3, 30.0, "extended"),
+    pytest.param("child", 3, 30.0, "thesis", marks=SLOW_CLOCK),
+    pytest.param("child", 3, 60.0, "thesis"),
+]
+"""A table of any height, a mug anywhere on it."""
+
+
+@cache
+def trial(who: str, number: int, rate_hz: float) -> Capture:
+    return drinking(who, number, rate_hz=rate_hz)
+
+
+@pytest.mark.parametrize(("who", "number", "rate_hz", "profile"), TRIALS)
+def test_a_drink_is_the_same_for_bodies_and_tables_of_any_size(
+    who: str, number: int, rate_hz: float, profile: str
+) -> None:
+    assert steps_of(observe(trial(who, number, rate_hz), rules=profile)) == STEPS[profile]
+
+
+@pytest.mark.parametrize("who", ["man", "woman", "child"])
+@pytest.mark.parametrize("noisy", [False, True])
+@pytest.mark.parametrize("profile", ["extended", "thesis"])
+def test_a_sip_is_the_published_six_steps(who: str, profile: str, *, noisy: bool) -> None:
+    capture = action_capture("sip", who, rate_hz=103.3, noisy=noisy)
+    assert steps_of(observe(capture, rules=profile)) == SIPS[profile]
+
+
+PERFORMED = (("touch", "child"), ("carry", "woman"), ("pour", "man"))
+"""Each action by another body; how it looks depends on the two apart."""
+
+
+@pytest.mark.parametrize(("action", "who"), PERFORMED)
+def test_what_is_looked_at_is_told_while_the_gaze_stays_on_it(action: str, who: str) -> None:
+    found = fixations(performed(action, who), action_capture(action, who))
+    things = [fixation for fixation in found if fixation.thing]
+    assert things
+    assert all(fixation.told == 1.0 for fixation in things)
+    assert share_told(found, of_things=False) > 0.9
+    assert max(fixation.missed_rad for fixation in found) < np.radians(0.5)
+
+
+def test_a_face_alone_passes_above_a_mug_that_the_eyes_look_at() -> None:
+    made = performed("sip")
+    capture = record(made, name="sip", seed=3, tracker=PERFECT, eye_tracker=False)
+    face = fixations(made, capture)
+    eyes = fixations(made, action_capture("sip"))
+    assert [fixation.thing for fixation in face] == [fixation.thing for fixation in eyes]
+    assert share_told(face, of_things=True) < 0.5 < share_told(eyes, of_things=True)
+    assert [sensor.name for sensor in capture.sensors] == ["right_hand", "left_hand", "head"]

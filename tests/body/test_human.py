@@ -1,12 +1,15 @@
-"""The model has the measures, masses and ranges that its tables say, for bodies of any size."""
+"""A body has the measures and ranges of its tables, its solver gets where it can, and it stands."""
 
+import mink
 import mujoco
 import numpy as np
 import pytest
 from combinations import EVERY
+from scipy.spatial.transform import RigidTransform
 from virtual_bodies.sizes import PEOPLE as SIZES
 from virtual_bodies.sizes import READY
 
+from capar.body import scenes
 from capar.body.anthropometry import (
     MeasuresError,
     estimate_measures,
@@ -17,8 +20,19 @@ from capar.body.anthropometry import (
     ready_made,
     table,
 )
-from capar.body.fingers import GraspError, grasp
-from capar.body.human import Human, PostureError, body_spec, sensor_sites, site_rows
+from capar.body.gaze import share_costs
+from capar.body.human import Human, PostureError, body_spec, site_rows
+from capar.body.inverse_kinematics import (
+    MARGIN_M,
+    BalanceLimit,
+    BalanceTask,
+    Solver,
+    sole,
+    standing_support,
+    support,
+)
+from capar.body.performing import RELAXED, perform
+from capar.body.scripts import SIDES, slide
 from capar.body.skeleton import skeleton
 from capar.model.capture import Agent
 from capar.model.errors import UnknownNameError
@@ -136,26 +150,11 @@ def test_every_number_names_its_source() -> None:
     assert {row["source"] for row in table("joints")["joint"]} <= set(table("joints")["sources"])
 
 
-def test_the_thesiss_eleven_sensors_have_a_place_each() -> None:
-    places = {"l5", "head", "neck"} | {
-        f"{side}_{part}" for side in ("right", "left") for part in ("hand", "elbow", "knee", "foot")
-    }
-    assert set(sensor_sites()) == {f"sensor_{each}" for each in places}
-
-
 def test_the_measures_say_which_were_given() -> None:
     measures = estimate_measures(sex="female", given={"stature": 1.7, "upper_arm": 0.29})
     assert measures.given == {"stature", "upper_arm"}
     assert measures["upper_arm"] == 0.29
-    assert "forearm" in measures.estimated
     assert measures.deviations["upper_arm"] < measures.deviations["forearm"]
-
-
-def test_a_tall_percentile_is_not_tall_in_every_measure() -> None:
-    usual, tall = (estimate_measures(percentile=each) for each in (50.0, 95.0))
-    row = table("anthropometry")["man"]
-    assert tall["stature"] == pytest.approx(row["stature"]["percentiles"][2], abs=0.01)
-    assert usual["hand_length"] < tall["hand_length"] < row["hand_length"]["percentiles"][2]
 
 
 def test_between_nine_and_eighteen_proportions_pass_from_the_childs_to_the_adults() -> None:
@@ -196,15 +195,152 @@ def test_a_posture_out_of_range_is_refused_with_the_range() -> None:
         human.posture({"elbow": 0.1})
 
 
-@pytest.mark.parametrize("name", READY)
-@pytest.mark.parametrize("side", ["right", "left"])
-def test_a_hand_closes_round_a_width(name: str, side: str) -> None:
-    human = Human.of(ready_made(name))
-    width = 0.3 * human.measures["hand_length"]
-    posture = human.posture(grasp(human, side, width))[None]
-    tips = human.sites(posture, (f"{side}_fingertip", f"{side}_thumb_tip"))
-    (finger, _), (thumb, _) = tips.values()
-    assert np.linalg.norm(finger - thumb) == pytest.approx(width, abs=1e-3)
-    assert set(grasp(human, side, None).values()) == {0.0}
-    with pytest.raises(GraspError, match="closes round"):
-        grasp(human, side, 0.5)
+UPRIGHT_PALM = np.array([0.0, 0.5**0.5, 0.0, 0.5**0.5, 0.623, -0.16, 0.88])
+"""``T_world_palm``, w x y z and [m]: a child's palm far before it, its fingers up."""
+
+
+CHILD = Human.of(measures_of(Agent("child", "child", {"stature": 1.36, "mass": 30.5})))
+
+
+def asked(human: Human) -> tuple[mink.Configuration, list[mink.Task]]:
+    """A child at ease whose feet stay and whose palm is asked far forward; the palm is first."""
+    eased = {f"{s}_{n}": float(np.radians(a)) for n, a in RELAXED.items() for s in SIDES}
+    configuration = mink.Configuration(human.model)
+    configuration.update(human.posture(eased))
+    palm = mink.FrameTask("right_palm", "site", 60.0, 8.0)
+    feet = [mink.FrameTask(f"{s}_foot", "body", 60.0, 8.0) for s in SIDES]
+    ease = mink.PostureTask(human.model, cost=share_costs(human, 0.05))
+    balance = mink.ComTask(cost=[2.0, 2.0, 0.0])
+    for task in (*feet, ease, balance):
+        task.set_target_from_configuration(configuration)
+    palm.set_target(mink.SE3(UPRIGHT_PALM))
+    damping = mink.DampingTask(human.model, cost=0.05)
+    return configuration, [palm, *feet, ease, balance, damping]
+
+
+def missed_m(configuration: mink.Configuration, tasks: list[mink.Task]) -> float:
+    """How far the palm is from where it is asked to be [m]."""
+    return float(np.linalg.norm(tasks[0].compute_error(configuration)[:3]))
+
+
+def test_no_step_leads_further_away_and_the_palm_gets_there() -> None:
+    human = CHILD
+    configuration, tasks = asked(human)
+    solver = Solver(human, tasks)
+    errors = [solver.error(configuration)]
+    while not solver.settled and len(errors) < 200:
+        solver.step(configuration)
+        errors.append(solver.error(configuration))
+    assert solver.settled
+    assert (np.diff(errors) <= 0.0).all()
+    assert missed_m(configuration, tasks) < 0.002
+    assert not human.outside(configuration.q[None], margin=1e-3).any()
+
+
+def test_plain_steps_to_the_same_place_go_to_and_fro_beside_it() -> None:
+    human = CHILD
+    configuration, tasks = asked(human)
+    limits = Solver(human, tasks).limits
+    missed = []
+    for _ in range(100):
+        velocity = mink.solve_ik(configuration, tasks, 1.0, "daqp", limits=limits)
+        configuration.integrate_inplace(velocity, 1.0)
+        missed.append(missed_m(configuration, tasks))
+    assert min(missed[-20:]) > 0.010
+
+
+SLACK_M = 0.002
+"""What the steps of inverse kinematics may go beyond a margin, as they are straight [m]."""
+
+
+@pytest.fixture(scope="module", params=("man", "woman", "child"))
+def human(request: pytest.FixtureRequest) -> Human:
+    return Human.of(ready_made(request.param))
+
+
+def test_the_base_of_support_is_around_both_soles_and_what_is_between_them(
+    human: Human,
+) -> None:
+    base = standing_support(human, human.posture())
+    feet = human.sites(human.posture()[None], ("right_foot", "left_foot"))
+    ankles = {name.removesuffix("_foot"): spots[0] for name, (spots, _) in feet.items()}
+    for side, ankle in ankles.items():
+        corners = (sole(human, side) + ankle)[:, :2]
+        assert base.outside(corners).max() < 1e-6
+    between = np.mean(list(ankles.values()), axis=0)[:2]
+    assert base.outside(between) < -0.05
+    length = human.measures["foot_length"]
+    assert base.outside(between + np.array([length, 0.0])) > 0.0
+    assert base.outside(between - np.array([0.5 * length, 0.0])) > 0.0
+    one = support(human, {"left": RigidTransform.from_translation(ankles["left"])})
+    assert one.outside(between) > 0.0
+
+
+def leaning(human: Human, *, balanced: bool) -> tuple[mink.Configuration, float, float]:
+    """Somebody drawn by the right palm to a place too far ahead to be reached without falling.
+
+    Returns:
+        The body, how far its weight is outside its feet, and how far the palm misses [m].
+    """
+    configuration = mink.Configuration(human.model)
+    configuration.update(human.posture())
+    base = standing_support(human, human.posture())
+    palm = mink.FrameTask("right_palm", "site", 60.0, 0.0)
+    start = configuration.get_transform_frame_to_world("right_palm", "site").translation()
+    goal = start + np.array([0.62 * human.measures["stature"], 0.0, 0.0])
+    palm.set_target(mink.SE3.from_translation(goal))
+    feet = [mink.FrameTask(f"{side}_foot", "body", 60.0, 8.0) for side in ("right", "left")]
+    ease = mink.PostureTask(human.model, cost=share_costs(human, 0.05))
+    for foot in feet:
+        foot.set_target_from_configuration(configuration)
+    ease.set_target(human.posture())
+    tasks = [palm, *feet, ease, mink.DampingTask(human.model, cost=0.05)]
+    if balanced:
+        solver = Solver(human, [*tasks, BalanceTask(base)], limits=[BalanceLimit(base)])
+    else:
+        solver = Solver(human, tasks)
+    for _ in range(200):
+        solver.step(configuration)
+        if solver.settled:
+            break
+    outside = float(base.outside(configuration.data.subtree_com[1, :2]))
+    spot = configuration.get_transform_frame_to_world("right_palm", "site").translation()
+    return configuration, outside, float(np.linalg.norm(spot - goal))
+
+
+def test_hips_stay_back_when_a_hand_is_drawn_far_ahead(human: Human) -> None:
+    free, falls, _ = leaning(human, balanced=False)
+    kept, stands, _ = leaning(human, balanced=True)
+    assert falls > 0.0
+    assert stands <= -MARGIN_M + SLACK_M
+    assert kept.q[0] < free.q[0] - 0.03, "the pelvis is further back [m]"
+
+
+def test_weight_that_is_beside_the_feet_is_drawn_back_above_them(human: Human) -> None:
+    configuration = mink.Configuration(human.model)
+    posture = human.posture()
+    base = standing_support(human, posture)
+    posture[0] += 0.3
+    configuration.update(posture)
+    edge, ease = BalanceTask(base), mink.PostureTask(human.model, cost=0.05)
+    ease.set_target(posture)
+    assert edge.compute_error(configuration)[0] > 0.05
+    solver = Solver(human, [edge, ease], limits=[BalanceLimit(base)])
+    for _ in range(40):
+        solver.step(configuration)
+    assert edge.compute_error(configuration)[0] < SLACK_M
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("far", [0.25, 0.4, 0.5])
+def test_a_performer_slides_a_far_mug_without_falling(far: float) -> None:
+    human = Human.of(ready_made("child"))
+    tall = human.measures["stature"]
+    mug = scenes.Thing(
+        "mug", scenes.cup(0.035, 0.09), (far * tall, -0.1 * tall, 0.45 * tall), round=True
+    )
+    desk = scenes.table(0.45 * tall, near_m=0.13 * tall)
+    made = perform(human, scene(desk, mug), slide("mug", (0.0, 0.1, 0.0)), rate_hz=20.0)
+    base = standing_support(human, made.motion[0])
+    places = np.array([human.centre_of_mass(posture)[:2] for posture in made.motion])
+    assert base.outside(places).max() <= -MARGIN_M + SLACK_M
