@@ -140,13 +140,14 @@ class Follower:
         level = np.array([1.0, 1.0, 0.0])
         foot, pelvis = (np.multiply(stays * cost, level) for cost in ON_SPOT_COST)
         foot[2] = STANDING_COST[0]
-        standing: list[mink.Task] = [mink.FrameTask("pelvis", "body", pelvis, UPRIGHT_COST * level)]
+        standing = [mink.FrameTask("pelvis", "body", pelvis, UPRIGHT_COST * level)]
         for side in SIDES:
             standing.append(mink.FrameTask(f"{side}_foot", "body", foot, STANDING_COST[1] * level))
         for task in standing:
             task.set_target_from_configuration(self.configuration)
         on_trunk = any(segment.startswith(("thorax", "lumbar")) for segment in self.segments)
-        return standing if on_trunk else [*standing, DirectionTask("thorax_upper", TRUNK_COST)]
+        trunk = [] if on_trunk else [DirectionTask("thorax_upper", TRUNK_COST)]
+        return [*standing, *trunk]
 
     def run(
         self, frames: range, start: Float[np.ndarray, "posture"], iterations: int

@@ -340,7 +340,7 @@ def test_a_performer_slides_a_far_mug_without_falling(far: float) -> None:
         "mug", scenes.cup(0.035, 0.09), (far * tall, -0.1 * tall, 0.45 * tall), round=True
     )
     desk = scenes.table(0.45 * tall, near_m=0.13 * tall)
-    made = perform(human, scene(desk, mug), slide("mug", (0.0, 0.1, 0.0)), rate_hz=20.0)
+    made = perform(human, scenes.scene(desk, mug), slide("mug", (0.0, 0.1, 0.0)), rate_hz=20.0)
     base = standing_support(human, made.motion[0])
     places = np.array([human.centre_of_mass(posture)[:2] for posture in made.motion])
     assert base.outside(places).max() <= -MARGIN_M + SLACK_M
