@@ -1,27 +1,69 @@
 """Segments of real recordings drawn at random, explained for readers who judge them by that.
 
 Run by hand: ``PYTHONPATH=tests python benchmarks/drawn_explanations.py SEED FOLDER [--count 20]
-[--kept FOLDER]`` with ``CAPAR_DATA``. Takes are drawn from those of ``told_sentences.py`` without
-replacement, and of each one segment, whatever its name. For each number the folder gets what
-``capar explain`` prints, the picture of ``--plot``, and the bodies at the segment's start, middle
-and end, as ``capar view --png`` draws them; ``drawn.tsv`` says what was drawn, and is not for
-readers. With a second folder, captures and observations are kept there and read again.
+[--kept FOLDER]`` with ``CAPAR_DATA``. Takes are drawn without replacement, and of each one
+segment, whatever its name. For each number the folder gets what ``capar explain`` prints, the
+picture of ``--plot``, and the bodies at the segment's start, middle and end, as ``capar view
+--png`` draws them; ``drawn.tsv`` says what was drawn, and is not for readers. With a second
+folder, captures and observations are kept there and read again.
 """
 
 import argparse
+import pickle
 import random
 from pathlib import Path
 
-from told_sentences import TAKES, observed
-
 from capar.model.capture import Capture
-from capar.model.observation import Segment
+from capar.model.observation import Observation, Segment
 from capar.pipelines.explanation import Explained, explained
 from capar.pipelines.explanation_text import explanation_lines, notice_lines, staying
 from capar.pipelines.measured.claims import draw_claims
+from capar.pipelines.observation import observe_measured
+from capar.pipelines.trials import trial_of
 from capar.views.viewer.snapshot import snapshot
 from capar.views.viewer.stage import stage
 from capar_rules.engine.profiles import profile
+from extractors.measure import measure
+
+ROOT = Path(__file__).parents[1]
+DEMO = ROOT / "capar" / "demo" / "drink_from_mug"
+CARRIED = (
+    *(f"sub2_largetable_{number:03d}" for number in (0, 1, 2, 3, 4, 5, 7, 8, 9)),
+    *(f"sub2_woodchair_{number:03d}" for number in range(7)),
+)
+REACHED = (
+    *("BackLow01", "ForwardHigh01", "ForwardLow01", "ForwardMediumMid01", "Left30Low01"),
+    *("Left60MediumNear01", "Right120Low01", "Right30MediumMid01"),
+)
+PACKED = (1, 2, 17, 23, 30, 34, 39, 40, 45, 48, 50, 52, 62, 64, 76, 78)
+TAKES = (
+    "demo",
+    "hand_embodiment_pillow",
+    "pyomeca_box_lift",
+    *(f"manipnet:{name}" for name in ("cube_med2", "cup1", "mug1")),
+    *(f"bimacs_optitrack:take{number}" for number in range(10)),
+    *(f"omomo_intermimic/hands.toml:{name}" for name in CARRIED),
+    "omomo_intermimic/largebox_hands.toml:sub3_largebox_003",
+    *(f"omomo_intermimic:{name}" for name in CARRIED),
+    "omomo_intermimic/largebox.toml:sub3_largebox_003",
+    *(f"smartbody_mocap_reaching:Reach{name}" for name in REACHED),
+    "boxed_vr",
+    *(f"boxed_vr/scenes.toml:p{number}_s1" for number in PACKED),
+)
+
+
+def observed(take: str, kept: Path | None) -> tuple[Observation, Capture]:
+    """What was understood of a take, and its capture."""
+    name = take.replace("/", ".").replace(":", ".")
+    files = [] if kept is None else [kept / f"{name}.{what}" for what in ("pickle", "capture")]
+    if files and all(file.exists() for file in files):
+        observation, capture = (pickle.loads(file.read_bytes()) for file in files)
+        return observation, capture
+    capture = trial_of(DEMO if take == "demo" else ROOT / "examples" / take)
+    observation = observe_measured(capture, measure(capture))
+    for file, value in zip(files, (observation, capture), strict=bool(files)):
+        file.write_bytes(pickle.dumps(value))
+    return observation, capture
 
 
 def draw(seen: Explained, capture: Capture, segment: Segment, out: Path, number: int) -> None:

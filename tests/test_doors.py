@@ -38,7 +38,7 @@ def test_the_steps_are_those_that_were_performed(
 
 def test_a_description_says_what_was_opened_and_closed() -> None:
     seen = observe(open_and_close_drawer(motions.TALL_MAN).capture)
-    assert "opened the drawer with the right hand and closed it." in describe(seen)
+    assert "opened it, held it there, closed it" in describe(seen)
 
 
 def test_the_actionary_keeps_the_hinge_with_its_range_and_residual() -> None:

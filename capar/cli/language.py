@@ -56,7 +56,7 @@ def describe(
     from capar.pipelines.observation import observe
     from capar.views.notices import reservation_lines, reservations_on_told
     from kb.language.describe import describe as told
-    from kb.language.realisation import nouns
+    from kb.language.describe import nouns
 
     observation = observe(capture, rules=rule_base(profile, rules, actionary))
     if corrected:
@@ -82,7 +82,8 @@ def _corrected(observation: "Observation", actionary: str | None) -> "Observatio
 
     with Actionary.open(actionary, read_only=True) as opened:
         said = claims(opened.store, observation.capture)
-    return replace(observation, links=corrected_links(observation.links, said))
+    links = corrected_links(observation.links, said)
+    return replace(observation, links=links, relations=(), joint=())
 
 
 def parse(

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from kb.language.lexicalisation import USUAL_PREPOSITION, built
+from kb.language.phrases import USUAL_PREPOSITION, built
 from kb.lexicon.english import noun, past
 from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.tables import table

@@ -88,7 +88,7 @@ def run(*arguments: str) -> str:
 
 def test_stand_ins_are_told_after_the_text(bundle: Callable[[int, int], str]) -> None:
     told, _, notes = run("describe", bundle(0, 0)).partition(f"\n{HEADING}\n")
-    assert told == "Anna touched the box with the right hand.\n"
+    assert told == "Anna reached for the box with the right hand and touched it.\n"
     assert notes == (
         "note: The recording has no surfaces of the box and the post; rough ones are assumed.\n"
     )

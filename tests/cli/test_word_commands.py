@@ -32,7 +32,7 @@ def run(*arguments: str) -> str:
 
 def test_describe_tells_the_demo() -> None:
     told = run("describe", DEMO)
-    assert "lifted the mug to the mouth with the right hand" in told
+    assert "lifted it to the head" in told
     assert told.count("\n") == 1
     timed = json.loads(run("describe", DEMO, "--timed", "--detail", "summary", "--json"))
     assert " s)" in timed["description"]

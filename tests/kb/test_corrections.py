@@ -145,7 +145,7 @@ def test_the_corrected_links_are_the_account_and_are_described(drunk: Actionary)
     assert [each.index for each in hand.segments] == list(range(len(machine) + 1))
     assert all(one.last == two.first for one, two in pairwise(hand.segments))
     words = primitive_words(primitive_files())
-    assert "moved it to the mouth, lifted it, drank" in described(found, words=words)
+    assert "lifted it" in described(found, words=words)
     assert "lifted" not in described(seen, words=words)
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from kb.language.instruction import Window
-from kb.language.lexicalisation import PACKS
+from kb.language.phrases import PACKS
 from kb.language.reading.adjuncts import around, window_at
 from kb.language.reading.function_words import first_words, is_next, number_at, of_class
 from kb.language.reading.reader import RELATIVES, Reader
