@@ -1,4 +1,4 @@
-"""How primitives are said: patterns of a verb with places for objects, such as ``put {1} on {2}``."""
+"""How primitives are said: a verb with places for objects, such as ``put {1} on {2}``."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 

@@ -125,7 +125,7 @@ ACTIONS = {
     drink_from_mug: "lifted it to the head, drank, put it back on the table, and let go of it.",
     touch_cycle: "reached for the box with the right hand, touched it, and took the hand away.",
     slide_object: "reached for the box with the right hand, and pushed it along the table.",
-    pick_up_with_both_hands: "box with both hands, lifted it off the table, put it back on the table, and let go",
+    pick_up_with_both_hands: "with both hands, lifted it off the table, put it back on the table",
     hit: "hit the drum with the right hand and took the hand away.",
     move_obj: "pulled the stamp along the table with the right hand.",
 }
