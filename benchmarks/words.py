@@ -17,9 +17,8 @@ from typing import TypeVar
 
 from capar.pipelines.linguistic_report import answer_verb, primitive_files, primitive_words
 from kb.lexicon.loading import load_verbnet, load_words
-from kb.lexicon.tables import compressed_lines
-from kb.lexicon.verbnet_files import read_verbnet
-from kb.lexicon.wordnet import WordNet, wordnet
+from kb.lexicon.verbnet import read_verbnet
+from kb.lexicon.wordnet import WordNet, compressed_lines, wordnet
 from kb.store.stores import Store, open_store
 
 Value = TypeVar("Value")

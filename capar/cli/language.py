@@ -15,9 +15,7 @@ if TYPE_CHECKING:
 
     from capar.model.observation import Observation
     from kb.language import Question
-    from kb.lexicon.evidence import Seen
-    from kb.lexicon.fitting import Fit
-    from kb.lexicon.verb_report import VerbAnswer
+    from kb.lexicon.verbs import Fit, Seen, VerbAnswer
     from kb.store.stores import Store
 
 
@@ -183,14 +181,14 @@ def verb(
             base = rule_base("extended", rules, place)
             _print_fits(verbs_for(segment, words, store=store, rules=base)[:most], json=json)
         elif kinds:
-            from kb.lexicon.verb_report import keys_of_primitives
-            from kb.lexicon.verb_report import kinds as kinds_of
+            from kb.lexicon.verbs import keys_of_primitives
+            from kb.lexicon.verbs import kinds as kinds_of
 
             names = kinds_of(lemma, keys_of_primitives(words))
             _print_kinds(lemma, names, store, json=json)
         else:
             from capar.pipelines.linguistic_report import answer_verb
-            from kb.lexicon.claims import doubts_of
+            from kb.lexicon.verbs import doubts_of
 
             for doubt in doubts_of(words):
                 typer.echo(f"note [unknown-word]: {doubt}", err=True)
@@ -199,7 +197,7 @@ def verb(
 
 def _print_verb(answer: "VerbAnswer", *, json: bool) -> None:
     from capar.cli.output import print_json
-    from kb.lexicon.evidence import often, summed
+    from kb.lexicon.verbs import often, summed
 
     if json:
         print_json(answer, sort_keys=True)
@@ -228,7 +226,7 @@ def _print_verb(answer: "VerbAnswer", *, json: bool) -> None:
 
 def _in_all(seen: "Iterable[Seen]") -> str:
     """Primitives with how often each was seen in every observation together."""
-    from kb.lexicon.evidence import often, summed
+    from kb.lexicon.verbs import often, summed
 
     sums = summed(replace(each, observation="") for each in seen)
     return ", ".join(f"{each.primitive} {often(each.count)}" for each in sums)
@@ -251,7 +249,7 @@ def _print_classes(console: "Console", answer: "VerbAnswer") -> None:
 
 def _print_kinds(lemma: str, names: tuple[str, ...], store: "Store | None", *, json: bool) -> None:
     from capar.cli.output import print_json
-    from kb.lexicon.evidence import often, seen_in, summed
+    from kb.lexicon.verbs import often, seen_in, summed
 
     seen = [each for each in (seen_in(store) if store else ()) if each.primitive in names]
     if json:
@@ -310,7 +308,7 @@ def import_words(
     from capar.model.errors import UnknownNameError
     from kb.actionary import Actionary
     from kb.lexicon.loading import load_verbnet
-    from kb.lexicon.verbnet_files import key_rate, read_verbnet
+    from kb.lexicon.verbnet import key_rate, read_verbnet
     from kb.lexicon.wordnet import wordnet
 
     if source != "verbnet":
@@ -381,11 +379,12 @@ def linguistics(
     json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
 ) -> None:
     """Which verbs and classes of verbs the system addresses, with what proves it."""
+    from kb.reports.formats import write
+
     from capar.cli.options import open_words
     from capar.cli.output import check_writable, written
     from capar.pipelines.linguistic_report import cases_of, primitive_files
     from capar.pipelines.linguistic_report import linguistics as report_of
-    from kb.reports.writing import write
 
     if out is not None:
         check_writable(out)

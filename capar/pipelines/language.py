@@ -10,12 +10,11 @@ from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from kb.language.describe import Detail
 from kb.language.describe import describe as told
 from kb.language.vocabulary import EFFECTORS, Vocabulary
-from kb.lexicon.fitting import Fit, fitting
-from kb.lexicon.fitting import Seen as SegmentSeen
-from kb.lexicon.levin import levin_classes
-from kb.lexicon.links import PrimitiveWords
+from kb.lexicon.links import PrimitiveWords, levin_classes
 from kb.lexicon.loading import has_source, verbnet_class_of
 from kb.lexicon.verbnet import VerbClass
+from kb.lexicon.verbs import Fit, fitting
+from kb.lexicon.verbs import SegmentFeatures as SegmentSeen
 from ontology import CAPAR
 
 if TYPE_CHECKING:

@@ -9,13 +9,20 @@ from typing import TYPE_CHECKING
 from capar.model.errors import FileError, RuleError
 from capar_rules.authoring.user_primitives import read_examples
 from capar_rules.engine.solver import rule_file, solve
-from kb.lexicon.evidence import Case, Seen, seen_in
-from kb.lexicon.facts import lexical_facts, verbnet_members
 from kb.lexicon.links import PrimitiveWords
 from kb.lexicon.loading import every_verbnet_member, verbnet_of
-from kb.lexicon.verb_report import Standing, VerbAnswer, about, keys_of_primitives
-from kb.reports.assembling import Derived, assemble
-from kb.reports.linguistics import LinguisticReport
+from kb.lexicon.verbs import (
+    Case,
+    Seen,
+    Standing,
+    VerbAnswer,
+    about,
+    keys_of_primitives,
+    lexical_facts,
+    seen_in,
+    verbnet_members,
+)
+from kb.reports.linguistics import Derived, LinguisticReport, assemble
 
 if TYPE_CHECKING:
     from kb.store.stores import Store

@@ -6,7 +6,7 @@ from itertools import pairwise
 from capar.model.facts import MovedBy, MovesWith, Moving, Touching
 from capar.model.notices import Notice, notice
 from capar.model.observation import Observation, ObservedLink
-from kb.lexicon.tables import table
+from kb.lexicon.wordnet import table
 
 NOTICED_S = 0.2
 """A thing that moves without contact for less than this [s] is not noted: an onlooker takes so long

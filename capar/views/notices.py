@@ -9,7 +9,7 @@ from capar.model.notices import KINDS, Notice
 from capar.model.observation import Observation
 from capar.views.lost_contact import contact_gaps
 from kb.lexicon.english import capital, joined, number, the
-from kb.lexicon.tables import table
+from kb.lexicon.wordnet import table
 
 STAYS_M = 0.02
 """What is found again less far than this [m] from where it was lost has stayed, as far as known."""

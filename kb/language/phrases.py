@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from kb.lexicon.english import past, words_of
 from kb.lexicon.links import PrimitiveWords
-from kb.lexicon.tables import table
+from kb.lexicon.wordnet import table
 
 USUAL_PREPOSITION = "with"
 """Before the second object of a primitive whose rule file names none."""

@@ -7,7 +7,7 @@ from importlib.resources import files
 
 from kb.language.instruction import GAP, Condition, Instruction, Relation
 from kb.lexicon.english import PEOPLE
-from kb.lexicon.tables import table
+from kb.lexicon.wordnet import table
 
 SOURCES = ("off", "out of", "away from")
 """Prepositions of what a thing is taken from, as observations state them."""

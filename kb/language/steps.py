@@ -9,8 +9,7 @@ from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import Motion
 from kb.language.phrases import FREE, GIVEN, GOALS, MOMENTARY, QUIET, RECEIVED, Phrasebook
 from kb.lexicon.english import joined, the_agent, words_of
-from kb.lexicon.tables import table
-from kb.lexicon.wordnet import wordnet
+from kb.lexicon.wordnet import table, wordnet
 
 Key = tuple[str, int]
 """A segment: its end-effector and its index."""

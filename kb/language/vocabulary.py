@@ -7,7 +7,7 @@ from functools import cached_property
 from kb.language.phrases import USUAL_PREPOSITION, built
 from kb.lexicon.english import noun, past
 from kb.lexicon.links import PrimitiveWords
-from kb.lexicon.tables import table
+from kb.lexicon.wordnet import table
 
 SIDES = ("right", "left")
 PARTS = ("hand", "forearm", "elbow", "foot", "knee")

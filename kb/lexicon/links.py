@@ -1,11 +1,13 @@
-"""How primitives link to words, and who says so: the thesis, or the rules that we ship."""
+"""Levin's verb classes, and how primitives link to words: by the thesis, or by our rules."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
+from types import MappingProxyType
 
-from kb.lexicon.tables import table
-from kb.lexicon.wordnet import wordnet
+from capar.model.errors import UnknownNameError
+from kb.lexicon.wordnet import table, wordnet
 
 MOTION_FILES = (35, 38)
 """WordNet's files of verbs of contact and of motion."""
@@ -195,3 +197,62 @@ def motion_senses(verb: str) -> tuple[str, ...]:
 def motion_classes(verb: str) -> tuple[str, ...]:
     """Levin classes in which a verb is a motion of the body, none if our table lacks it."""
     return tuple(row["class"] for row in table("motion_classes") if row["verb"] == verb)
+
+
+@dataclass(frozen=True, slots=True)
+class LevinClass:
+    """A class of Levin's book (English Verb Classes and Alternations, 1993)."""
+
+    number: str
+    """``40.3.1``: its section of the book's second part."""
+
+    broader: str
+    """The class that it is part of, or empty."""
+
+    title: str
+    size: int
+    """The number of verbs that the book lists; zero where it lists them by subclass."""
+
+    verbnet: tuple[str, ...]
+    """VerbNet 3.4's classes of the same verbs: ``wink-40.3.1``."""
+
+
+@cache
+def levin_classes() -> Mapping[str, LevinClass]:
+    """Every class by its number, in the book's order."""
+    rows = (
+        LevinClass(
+            row["number"],
+            row["broader"],
+            row["title"],
+            int(row["members"] or 0),
+            tuple(row["verbnet"].split()),
+        )
+        for row in table("levin")
+    )
+    return MappingProxyType({each.number: each for each in rows})
+
+
+def levin_class(number: str) -> LevinClass:
+    """The class of a number.
+
+    Raises:
+        UnknownNameError: The book has no such class.
+    """
+    known = levin_classes()
+    if number not in known:
+        raise UnknownNameError("Levin class", number, known)
+    return known[number]
+
+
+def above(number: str) -> Iterator[str]:
+    """Numbers of the classes that a class is part of, nearest first."""
+    broader = levin_class(number).broader
+    while broader:
+        yield broader
+        broader = levin_class(broader).broader
+
+
+def book_order(number: str) -> tuple[int, ...]:
+    """A key that sorts 9.10 after 9.9."""
+    return tuple(int(part) for part in number.split(".") if part)

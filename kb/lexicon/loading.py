@@ -1,26 +1,91 @@
-"""Words into a store, once each, and VerbNet's classes of a verb out of it."""
+"""Words into a store, once each, and VerbNet's classes out of it."""
 
 import hashlib
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
+from typing import TypeAlias
+from urllib.parse import quote
 
 from pyoxigraph import Literal, NamedNode, Quad, Triple
 
-from kb.lexicon import terms
-from kb.lexicon.links import PrimitiveWords
-from kb.lexicon.rdf_links import levin_triples, link_triples
-from kb.lexicon.rdf_verbnet import BROADER, Row, classes_from, verbnet_triples
-from kb.lexicon.rdf_wordnet import wordnet_triples
-from kb.lexicon.tables import FOLDER
-from kb.lexicon.verbnet import Member, VerbClass
-from kb.lexicon.wordnet import WordNet, wordnet
+from kb.lexicon.links import (
+    Claimant,
+    PrimitiveWords,
+    SenseLink,
+    class_links,
+    levin_classes,
+    remarks,
+    sense_links,
+    thesis_claims,
+    thesis_senses,
+)
+from kb.lexicon.verbnet import Frame, Member, Phrase, Predicate, Role, VerbClass
+from kb.lexicon.wordnet import FOLDER, Synset, WordNet, frame_sentence, wordnet
+from kb.store import names
+from kb.store.statements import LABEL, TYPE, PropertyValues, StatementIndex, terms
 from kb.store.stores import EmbeddedStore, Store
-from ontology import CAPAR
+from ontology import CAPAR, DATA, PREFIXES
+from ontology.namespace import RDFS, SKOS
+
+ONTOLEX = PREFIXES["ontolex"]
+WN = "https://globalwordnet.github.io/schemas/wn#"
+COMMENT = NamedNode(RDFS + "comment")
+BROADER = NamedNode(SKOS + "broader")
+NOTATION = NamedNode(SKOS + "notation")
+CLOSE_MATCH = NamedNode(SKOS + "closeMatch")
+DEFINITION = NamedNode(SKOS + "definition")
 
 BATCH = 20_000
 """Statements that are sent to a server in one request."""
 
 SHIPPED = ("wordnet-3.1-verbs.tsv.gz", "wordnet-frames.tsv", "levin.tsv", "thesis_claims.tsv")
+
+Triples: TypeAlias = Iterator[Triple]
+
+
+def graph_of(source: str) -> NamedNode:
+    """The named graph of a source of words: ``wordnet``, ``levin``, ``verbnet`` or ``links``."""
+    return NamedNode(f"{DATA}graph/lexicon/{source}")
+
+
+def synset_node(offset: str) -> NamedNode:
+    """A synset of WordNet 3.1's verbs."""
+    return NamedNode(f"{DATA}synset/{offset}-v")
+
+
+def sense_node(key: str) -> NamedNode:
+    """A sense by its key."""
+    return NamedNode(f"{DATA}sense/{quote(key, safe='')}")
+
+
+def verb_node(lemma: str) -> NamedNode:
+    """A verb as a word."""
+    return NamedNode(f"{DATA}verb/{quote(lemma.replace(' ', '_'), safe='')}")
+
+
+def levin_node(number: str) -> NamedNode:
+    """A class of Levin's."""
+    return NamedNode(f"{DATA}levin/{number}")
+
+
+def verbnet_node(name: str) -> NamedNode:
+    """A class of VerbNet."""
+    return NamedNode(f"{DATA}verbnet/{quote(name, safe='')}")
+
+
+def _english(text: str) -> Literal:
+    return Literal(text, language="en")
+
+
+def _stated(node: NamedNode, kind: NamedNode | None, properties: PropertyValues) -> Triples:
+    """The class and the properties of a thing."""
+    if kind is not None:
+        yield Triple(node, TYPE, kind)
+    for predicate, value in properties.items():
+        yield from (Triple(node, predicate, each) for each in terms(value))
+
+
+# Into a store
 
 
 def load_words(store: Store, primitives: Sequence[PrimitiveWords] = ()) -> bool:
@@ -30,13 +95,13 @@ def load_words(store: Store, primitives: Sequence[PrimitiveWords] = ()) -> bool:
         Whether anything was loaded; what is there already stays.
     """
     shipped = hashlib.sha256(b"".join((FOLDER / each).read_bytes() for each in SHIPPED))
+    links = list(link_triples(primitives))
+    stated = hashlib.sha256("\n".join(sorted(map(str, links))).encode())
     loaded = [
         _load(store, "wordnet", shipped.hexdigest(), lambda: wordnet_triples(wordnet())),
         _load(store, "levin", shipped.hexdigest(), levin_triples),
+        _load(store, "links", stated.hexdigest(), lambda: links),
     ]
-    links = list(link_triples(primitives))
-    stated = hashlib.sha256("\n".join(sorted(map(str, links))).encode())
-    loaded.append(_load(store, "links", stated.hexdigest(), lambda: links))
     return any(loaded)
 
 
@@ -52,7 +117,7 @@ def load_verbnet(store: Store, classes: Sequence[VerbClass], words: WordNet) -> 
 
 def _load(store: Store, source: str, digest: str, triples: Callable[[], Iterable[Triple]]) -> bool:
     """Fill a source's graph, its mark last: a graph without it is not whole, and is made again."""
-    graph = terms.graph(source)
+    graph = graph_of(source)
     mark = Triple(graph, CAPAR.sha256, Literal(digest))
     if store.ask(f"ASK {{ GRAPH {graph} {{ {mark} }} }}").boolean:
         return False
@@ -67,9 +132,172 @@ def _load(store: Store, source: str, digest: str, triples: Callable[[], Iterable
     return True
 
 
+def wordnet_triples(words: WordNet) -> Triples:
+    """Every verb of a WordNet: words, senses and synsets of OntoLex, with their ILI."""
+    for lemma in words.lemmas:
+        label = {LABEL: _english(lemma.replace("_", " "))}
+        yield from _stated(verb_node(lemma), NamedNode(ONTOLEX + "Word"), label)
+    sentences = {str(each): Literal(frame_sentence(str(each))) for each in range(1, 36)}
+    for synset in words:
+        yield from synset_triples(synset, sentences)
+
+
+def synset_triples(value: Synset, sentences: dict[str, Literal]) -> Triples:
+    """A synset with its senses."""
+    node = synset_node(value.offset)
+    frames = sorted({each.partition(":")[0] for each in value.frames})
+    properties: PropertyValues = {
+        DEFINITION: _english(value.gloss),
+        CAPAR.synsetOffset: value.offset,
+        CAPAR.lexicographerFile: value.lexfile,
+        CLOSE_MATCH: NamedNode(f"https://en-word.net/id/oewn-{value.offset}-v"),
+        NamedNode(WN + "ili"): NamedNode(PREFIXES["ili"] + value.ili) if value.ili else None,
+        NamedNode(WN + "hypernym"): [synset_node(above) for above in value.hypernyms],
+        CAPAR.genericSentence: [sentences[frame] for frame in frames],
+    }
+    yield from _stated(node, NamedNode(ONTOLEX + "LexicalConcept"), properties)
+    for sense in value.senses:
+        own = sense_node(sense.key)
+        yield Triple(verb_node(sense.lemma.lower()), NamedNode(ONTOLEX + "sense"), own)
+        of_sense: PropertyValues = {
+            NamedNode(ONTOLEX + "isLexicalizedSenseOf"): node,
+            CAPAR.senseKey: sense.key,
+            CAPAR.senseNumber: sense.number,
+        }
+        yield from _stated(own, NamedNode(ONTOLEX + "LexicalSense"), of_sense)
+
+
+def levin_triples() -> Triples:
+    """Levin's classes, with the thesis's claims and our remarks about them."""
+    for levin in levin_classes().values():
+        of_class: PropertyValues = {
+            LABEL: _english(levin.title),
+            NOTATION: levin.number,
+            BROADER: levin_node(levin.broader) if levin.broader else None,
+            CAPAR.classSize: levin.size or None,
+            CLOSE_MATCH: [verbnet_node(name) for name in levin.verbnet],
+        }
+        yield from _stated(levin_node(levin.number), CAPAR.LevinClass, of_class)
+    for index, claim in enumerate(thesis_claims()):
+        of_claim: PropertyValues = {
+            CAPAR.claimedBy: Claimant.THESIS.value,
+            CAPAR.claimedStatus: claim.status.value,
+            CAPAR.reason: Literal(claim.reason),
+            CAPAR.section: Literal(claim.section),
+            CAPAR.quote: Literal(claim.quote),
+            CAPAR.printedClass: claim.said,
+            CAPAR.levinClass: levin_node(claim.levin) if claim.levin else None,
+            CAPAR.claimedVerb: [Literal(verb) for verb in claim.verbs],
+        }
+        yield from _stated(NamedNode(f"{DATA}claim/{index}"), CAPAR.CapabilityClaim, of_claim)
+    for index, remark in enumerate(remarks()):
+        of_remark: PropertyValues = {
+            COMMENT: _english(remark.text),
+            CAPAR.claimedVerb: Literal(remark.verb),
+            CAPAR.levinClass: levin_node(remark.levin),
+        }
+        yield from _stated(NamedNode(f"{DATA}remark/{index}"), CAPAR.LexicalRemark, of_remark)
+
+
+def link_triples(primitives: Iterable[PrimitiveWords]) -> Triples:
+    """How primitives link to senses and classes, by the thesis and by us."""
+    words = list(primitives)
+    for link in (*thesis_senses(), *(link for each in words for link in sense_links(each))):
+        yield from _sense_link(link)
+    for each in words:
+        numbers, claimant = class_links(each)
+        for number in numbers:
+            properties: PropertyValues = {
+                CAPAR.linkedAction: names.shared("action", each.name),
+                CAPAR.levinClass: levin_node(number),
+                CAPAR.claimedBy: claimant.value,
+            }
+            node = names.shared("link", claimant.value, each.name, number)
+            yield from _stated(node, CAPAR.LexicalLink, properties)
+
+
+def _sense_link(link: SenseLink) -> Triples:
+    action, sense = names.shared("action", link.primitive), sense_node(link.key)
+    yield Triple(sense, NamedNode(ONTOLEX + "reference"), action)
+    properties: PropertyValues = {
+        CAPAR.linkedAction: action,
+        CAPAR.linkedSense: sense,
+        CAPAR.claimedBy: link.claimed_by.value,
+        CAPAR.oldSenseNumber: link.number_1_6 or None,
+        COMMENT: _english(link.remark) if link.remark else None,
+    }
+    node = names.shared("link", link.claimed_by.value, link.primitive, link.key)
+    yield from _stated(node, CAPAR.LexicalLink, properties)
+
+
+def verbnet_triples(classes: Iterable[VerbClass], words: WordNet) -> Triples:
+    """Every class with what it states itself; senses where that WordNet has them."""
+    for top in classes:
+        for each in top.family:
+            yield from _verbnet_class(each, words)
+
+
+def _verbnet_class(value: VerbClass, words: WordNet) -> Triples:
+    node = verbnet_node(value.id)
+    parts = {
+        CAPAR.classMember: [names.part(node, "member", at) for at in range(len(value.members))],
+        CAPAR.thematicRole: [names.part(node, "role", at) for at in range(len(value.roles))],
+        CAPAR.verbFrame: [names.part(node, "frame", at) for at in range(len(value.frames))],
+    }
+    properties: PropertyValues = {
+        LABEL: value.id,
+        NOTATION: value.number,
+        BROADER: verbnet_node(value.parent) if value.parent else None,
+        CAPAR.levinClass: levin_node(value.levin) if value.levin in levin_classes() else None,
+        **parts,
+    }
+    yield from _stated(node, CAPAR.VerbNetClass, properties)
+    for own, member in zip(parts[CAPAR.classMember], value.members, strict=True):
+        of_member: PropertyValues = {
+            CAPAR.lemma: member.lemma.replace("_", " "),
+            CAPAR.memberVerb: verb_node(member.lemma),
+            CAPAR.senseKey: [Literal(key) for key in member.keys],
+            CAPAR.memberSense: [sense_node(key) for key in member.keys if key in words],
+        }
+        yield from _stated(own, CAPAR.ClassMember, of_member)
+    for index, (own, role) in enumerate(zip(parts[CAPAR.thematicRole], value.roles, strict=True)):
+        of_role: PropertyValues = {
+            LABEL: role.name,
+            CAPAR.index: index,
+            CAPAR.restriction: [Literal(each) for each in role.restrictions],
+        }
+        yield from _stated(own, CAPAR.ThematicRole, of_role)
+    for index, (own, frame) in enumerate(zip(parts[CAPAR.verbFrame], value.frames, strict=True)):
+        yield from _verbnet_frame(own, index, frame)
+
+
+def _verbnet_frame(own: NamedNode, index: int, frame: Frame) -> Triples:
+    syntax = "; ".join(f"{each.kind} {each.value}".strip() for each in frame.syntax)
+    meanings = [names.part(own, "predicate", number) for number in range(len(frame.semantics))]
+    properties: PropertyValues = {
+        CAPAR.index: index,
+        CAPAR.pattern: Literal(frame.pattern),
+        CAPAR.example: Literal(frame.example),
+        CAPAR.syntax: Literal(syntax),
+        CAPAR.semanticPredicate: meanings,
+    }
+    yield from _stated(own, CAPAR.VerbFrame, properties)
+    for number, (node, predicate) in enumerate(zip(meanings, frame.semantics, strict=True)):
+        of_predicate: PropertyValues = {
+            CAPAR.index: number,
+            CAPAR.predicateName: Literal(predicate.name),
+            CAPAR.holds: predicate.holds,
+            CAPAR.arguments: Literal("|".join(predicate.arguments)),
+        }
+        yield from _stated(node, CAPAR.SemanticPredicate, of_predicate)
+
+
+# Out of a store
+
+
 def has_source(store: Store, source: str) -> bool:
     """Whether a source's graph is there, and whole."""
-    graph = terms.graph(source)
+    graph = graph_of(source)
     asked = f"ASK {{ GRAPH {graph} {{ {graph} {CAPAR.sha256} ?digest }} }}"
     return bool(store.ask(asked).boolean)
 
@@ -80,95 +308,79 @@ def verbnet_of(store: Store, lemma: str) -> tuple[VerbClass, ...]:
     The classes that list the verb themselves come with all their members; each stands before
     the classes that it refines.
     """
-    listed = _ask(
-        store,
-        f"?class {CAPAR.classMember}/{CAPAR.memberVerb} {terms.verb(lemma.lower())} .",
-        "?class",
-    )
-    found = [str(row["class"]) for row in listed]
-    return read_classes(store, found) if found else ()
+    path = f"{CAPAR.classMember}/{CAPAR.memberVerb}"
+    return _read_classes(store, f"?class {path} {verb_node(lemma.lower())}")
 
 
 def verbnet_class_of(store: Store, levin: str) -> tuple[VerbClass, ...]:
     """VerbNet's classes of a Levin class, with the subclasses beside them."""
-    rows = _ask(store, f"?class {CAPAR.levinClass} {terms.levin(levin)} .", "?class")
-    return read_classes(store, [str(row["class"]) for row in rows])
+    return _read_classes(store, f"?class {CAPAR.levinClass} {levin_node(levin)}")
 
 
 def every_verbnet_member(store: Store) -> tuple[VerbClass, ...]:
     """VerbNet's classes with their members alone, by name."""
-    rows = _ask(
-        store,
-        f"?class {terms.LABEL} ?id ; {CAPAR.classMember} ?m . ?m {CAPAR.lemma} ?lemma",
-        "?id ?lemma",
-    )
+    asked = f"?class {LABEL} ?id ; {CAPAR.classMember}/{CAPAR.lemma} ?lemma"
+    rows = store.ask(f"SELECT ?id ?lemma {{ GRAPH {graph_of('verbnet')} {{ {asked} }} }}").texts()
     found: dict[str, set[str]] = {}
-    for row in rows:
-        found.setdefault(str(row["id"]), set()).add(str(row["lemma"]))
+    for name, lemma in rows:
+        found.setdefault(name, set()).add(lemma)
     return tuple(
         VerbClass(name, "", tuple(Member(each, ()) for each in sorted(lemmas)), (), (), ())
         for name, lemmas in sorted(found.items())
     )
 
 
-def read_classes(store: Store, nodes: Sequence[str]) -> tuple[VerbClass, ...]:
-    """The classes of these IRIs and all that they refine, sorted by name."""
+def _read_classes(store: Store, pattern: str) -> tuple[VerbClass, ...]:
+    """The classes that a pattern finds and all that they refine, sorted by name."""
+    graph = graph_of("verbnet")
+    rows = store.ask(
+        f"SELECT DISTINCT ?up {{ GRAPH {graph} {{ {pattern} . ?class {BROADER}* ?up }} }}"
+    )
+    nodes = [row[0] for row in rows.rows if isinstance(row[0], NamedNode)]
     if not nodes:
         return ()
-    chosen = (
-        f"VALUES ?class {{ {' '.join(_with_parents(store, nodes))} }} ?class {terms.LABEL} ?id ."
+    parts = "|".join(map(str, (CAPAR.classMember, CAPAR.thematicRole, CAPAR.verbFrame)))
+    stated = store.ask(
+        f"CONSTRUCT {{ ?s ?p ?o }} {{ GRAPH {graph} {{ "
+        f"VALUES ?class {{ {' '.join(map(str, nodes))} }} "
+        f"{{ BIND(?class AS ?s) }} UNION {{ ?class {parts} ?s }} "
+        f"UNION {{ ?class {CAPAR.verbFrame}/{CAPAR.semanticPredicate} ?s }} ?s ?p ?o }} }}"
     )
-    heads = _ask(
-        store,
-        f"{chosen} OPTIONAL {{ ?class {BROADER}/{terms.LABEL} ?parent }}",
-        "?id ?parent",
-    )
-    members = _ask(
-        store,
-        f"{chosen} ?class {CAPAR.classMember} ?m . ?m {CAPAR.lemma} ?lemma . "
-        f"OPTIONAL {{ ?m {CAPAR.senseKey} ?key }}",
-        "?id ?lemma ?key",
-    )
-    roles = _ask(
-        store,
-        f"{chosen} ?class {CAPAR.thematicRole} ?r . ?r {terms.LABEL} ?role ; {CAPAR.index} ?index ."
-        f" OPTIONAL {{ ?r {CAPAR.restriction} ?restriction }}",
-        "?id ?role ?index ?restriction",
-    )
-    frames = _ask(
-        store,
-        f"{chosen} ?class {CAPAR.verbFrame} ?f . ?f {CAPAR.index} ?frame ; {CAPAR.pattern} ?pattern"
-        f" ; {CAPAR.example} ?example ; {CAPAR.syntax} ?syntax",
-        "?id ?frame ?pattern ?example ?syntax",
-    )
-    predicates = _ask(
-        store,
-        f"{chosen} ?class {CAPAR.verbFrame} ?f . ?f {CAPAR.index} ?frame ; "
-        f"{CAPAR.semanticPredicate} ?p . ?p {CAPAR.predicateName} ?name ; {CAPAR.index} ?place ; "
-        f"{CAPAR.holds} ?holds ; {CAPAR.arguments} ?arguments",
-        "?id ?frame ?name ?place ?holds ?arguments",
-    )
-    found = classes_from(heads, members, roles, frames, predicates)
-    return tuple(sorted(found, key=lambda each: each.id))
+    index = StatementIndex(stated.triples or ())
+    return tuple(sorted((_class_of(index, each) for each in nodes), key=lambda each: each.id))
 
 
-def _with_parents(store: Store, nodes: Sequence[str]) -> list[str]:
-    """The classes and those that they refine, as terms, sorted."""
-    found, waiting = set[str](), set(nodes)
-    while waiting:
-        found |= waiting
-        values = " ".join(f"<{each}>" for each in sorted(waiting))
-        rows = _ask(store, f"VALUES ?class {{ {values} }} ?class {BROADER} ?parent", "?parent")
-        waiting = {str(row["parent"]) for row in rows} - found
-    return [f"<{each}>" for each in sorted(found)]
+def _class_of(of: StatementIndex, node: NamedNode) -> VerbClass:
+    parent = of.one(node, BROADER)
+    members = sorted(of.all(node, CAPAR.classMember), key=lambda each: of.text(each, CAPAR.lemma))
+    return VerbClass(
+        of.text(node, LABEL),
+        of.text(parent, LABEL) if parent else "",
+        tuple(
+            Member(of.text(each, CAPAR.lemma).replace(" ", "_"), of.texts(each, CAPAR.senseKey))
+            for each in members
+        ),
+        tuple(
+            Role(of.text(each, LABEL), of.texts(each, CAPAR.restriction))
+            for each in of.ordered(node, CAPAR.thematicRole, by=CAPAR.index)
+        ),
+        tuple(_frame_of(of, e) for e in of.ordered(node, CAPAR.verbFrame, by=CAPAR.index)),
+        (),
+    )
 
 
-def _ask(store: Store, where: str, variables: str) -> list[Row]:
-    graph = terms.graph("verbnet")
-    answer = store.ask(f"SELECT {variables} WHERE {{ GRAPH {graph} {{ {where} }} }}")
-    plain = list(answer.plain())
-    for row, terms_of in zip(plain, answer.rows, strict=True):
-        for name, term in zip(answer.variables, terms_of, strict=True):
-            if isinstance(term, NamedNode):
-                row[name] = term.value
-    return list(plain)
+def _frame_of(of: StatementIndex, node: NamedNode) -> Frame:
+    phrases = [each.partition(" ") for each in of.text(node, CAPAR.syntax).split("; ") if each]
+    return Frame(
+        of.text(node, CAPAR.pattern),
+        of.text(node, CAPAR.example),
+        tuple(Phrase(kind, value) for kind, _, value in phrases),
+        tuple(
+            Predicate(
+                of.text(each, CAPAR.predicateName),
+                tuple(of.text(each, CAPAR.arguments).split("|")),
+                holds=of.value(each, CAPAR.holds) is True,
+            )
+            for each in of.ordered(node, CAPAR.semanticPredicate, by=CAPAR.index)
+        ),
+    )

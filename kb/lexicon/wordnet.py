@@ -1,11 +1,30 @@
-"""The verbs of WordNet 3.1: synsets by sense key, lemma, offset or interlingual index."""
+"""The shipped tables of words, and the verbs of WordNet 3.1."""
 
+import csv
+import gzip
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
+from importlib.resources import files
 
 from capar.model.errors import UnknownNameError
-from kb.lexicon.tables import compressed_lines, table
+
+FOLDER = files("ontology") / "lexicon"
+"""Where the words' data files lie."""
+
+
+@cache
+def table(name: str) -> tuple[dict[str, str], ...]:
+    """The rows of a shipped ``NAME.tsv``, each by the names of its columns."""
+    text = (FOLDER / f"{name}.tsv").read_text(encoding="utf-8")
+    rows = csv.DictReader(text.splitlines(), delimiter="\t", quoting=csv.QUOTE_NONE)
+    return tuple(rows)
+
+
+def compressed_lines(name: str) -> list[str]:
+    """The lines of a shipped ``NAME.tsv.gz``."""
+    packed = (FOLDER / f"{name}.tsv.gz").read_bytes()
+    return gzip.decompress(packed).decode("utf-8").splitlines()
 
 
 @dataclass(frozen=True, slots=True, order=True)

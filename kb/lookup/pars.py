@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from pyoxigraph import Literal, NamedNode, Quad, Triple
+from pyoxigraph import Literal, NamedNode, Quad
 
 from capar.model.errors import ParError, UnknownNameError
 from capar.model.par import (
@@ -24,9 +24,9 @@ from capar.model.par import (
 from kb.encode import shared
 from kb.encode.pars import COMMON, MOTIONS, complex_node, is_known
 from kb.store import names
-from kb.store.answers import Plain, plain
+from kb.store.answers import plain
 from kb.store.sparql import fill
-from kb.store.statements import LABEL, TYPE, PropertyValues, Statements, numbers
+from kb.store.statements import LABEL, PropertyValues, StatementIndex, Statements, numbers
 from kb.store.stores import Store
 from ontology import CAPAR
 from ontology.namespace import ALLEN
@@ -223,7 +223,7 @@ def recognise(store: Store, value: ComplexPar, *, besides: NamedNode | None = No
     return min(given, key=lambda name: (-given[name], name)) if given else None
 
 
-def _reading(store: Store, name: str) -> "tuple[StatementIndex, NamedNode]":
+def _reading(store: Store, name: str) -> tuple[StatementIndex, NamedNode]:
     """Everything that an observation says or mentions, and the observation."""
     node = names.observation(name)
     own = store.graph(node)
@@ -352,66 +352,6 @@ def _quoted(text: str) -> str:
 
 
 # Statements read back
-
-
-class StatementIndex:
-    """Statements by subject and property."""
-
-    def __init__(self, statements: Iterable[Quad | Triple]) -> None:
-        self._said: dict[object, dict[NamedNode, list[NamedNode | Literal]]] = {}
-        for statement in statements:
-            if isinstance(statement.object, NamedNode | Literal):
-                said = self._said.setdefault(statement.subject, {})
-                said.setdefault(statement.predicate, []).append(statement.object)
-
-    def __contains__(self, node: NamedNode) -> bool:
-        """Whether anything is said of a thing."""
-        return node in self._said
-
-    def things(self, kind: NamedNode) -> list[NamedNode]:
-        """Everything of a class, by IRI."""
-        found = [
-            node
-            for node, said in self._said.items()
-            if isinstance(node, NamedNode) and kind in said.get(TYPE, ())
-        ]
-        return sorted(found, key=lambda node: node.value)
-
-    def all(self, node: NamedNode, predicate: NamedNode) -> list[NamedNode]:
-        """Things that are said of a thing, by IRI."""
-        values = self._said.get(node, {}).get(predicate, [])
-        return sorted((v for v in values if isinstance(v, NamedNode)), key=lambda v: v.value)
-
-    def one(self, node: NamedNode, predicate: NamedNode) -> NamedNode | None:
-        """The thing that is said of a thing, if one is."""
-        return next(iter(self.all(node, predicate)), None)
-
-    def value(self, node: NamedNode, predicate: NamedNode) -> Plain:
-        """The value that is said of a thing, if one is."""
-        values = self._said.get(node, {}).get(predicate, [])
-        return plain(values[0]) if values and isinstance(values[0], Literal) else None
-
-    def text(self, node: NamedNode, predicate: NamedNode) -> str:
-        """The text that is said of a thing; empty if none is."""
-        value = self.value(node, predicate)
-        return "" if value is None else str(value)
-
-    def words(self, node: NamedNode, predicate: NamedNode) -> tuple[str, ...]:
-        """The words of the text that is said of a thing."""
-        return tuple(self.text(node, predicate).split())
-
-    def number(self, node: NamedNode, predicate: NamedNode) -> float:
-        """The number that is said of a thing; zero if none is."""
-        value = self.value(node, predicate)
-        return float(value) if value is not None else 0.0
-
-    def count(self, node: NamedNode, predicate: NamedNode) -> int:
-        """The whole number that is said of a thing; zero if none is."""
-        return int(self.number(node, predicate))
-
-    def ordered(self, node: NamedNode, predicate: NamedNode, *, by: NamedNode) -> list[NamedNode]:
-        """Things that are said of a thing, in the order of their numbers."""
-        return sorted(self.all(node, predicate), key=lambda each: self.count(each, by))
 
 
 _MOTION_OF = {node: motion for motion, node in MOTIONS.items()}

@@ -4,22 +4,23 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from kb.lexicon.claims import doubts_of
 from kb.lexicon.english import words_of
-from kb.lexicon.evidence import Seen, total
-from kb.lexicon.levin import above, book_order, levin_class, levin_classes
 from kb.lexicon.links import (
     PrimitiveWords,
     SenseLink,
     ThesisStatus,
+    above,
+    book_order,
+    levin_class,
+    levin_classes,
     motion_senses,
     remarks,
     sense_links,
     thesis_claims,
     thesis_senses,
 )
-from kb.lexicon.tables import table
-from kb.lexicon.wordnet import Synset, wordnet
+from kb.lexicon.verbs import Seen, doubts_of, total
+from kb.lexicon.wordnet import Synset, table, wordnet
 from kb.reports.linguistics import (
     ClassReport,
     Coverage,

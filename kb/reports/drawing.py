@@ -3,8 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from kb.lexicon.levin import above, levin_class
-from kb.lexicon.links import ThesisStatus
+from kb.lexicon.links import ThesisStatus, above, levin_class
 from kb.reports.linguistics import ClassReport, How, LinguisticReport
 from kb.reports.svg import rect, text
 from kb.reports.tables import EVIDENCE

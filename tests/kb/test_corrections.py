@@ -28,7 +28,7 @@ from kb.corrections import (
 )
 from kb.errors import CorrectionError
 from kb.language.describe import describe as described
-from kb.lexicon.evidence import seen_in
+from kb.lexicon.verbs import seen_in
 from kb.store import names
 from kb.store_checks import check
 from ontology import CAPAR

@@ -10,7 +10,7 @@ from kb.language.reading.matching import matched as matched
 from kb.language.reading.noun_phrases import Noun, noun_phrase
 from kb.language.reading.reader import Reader
 from kb.language.reading.verb_phrases import VerbPhrase, begin, complete
-from kb.lexicon.inflection import Form
+from kb.lexicon.english import Form
 
 BE, DO, HAVE = "be", "do", "have"
 MAIN_VERBS = frozenset({"do", "doing", "done", "have", "having"})

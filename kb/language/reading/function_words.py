@@ -5,7 +5,7 @@ from functools import cache
 
 from kb.language.tokens import Cursor
 from kb.language.vocabulary import PREPOSITIONS
-from kb.lexicon.tables import table
+from kb.lexicon.wordnet import table
 
 Phrases = Mapping[tuple[str, ...], str]
 """Values by the words that stand for them."""

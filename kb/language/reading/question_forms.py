@@ -12,8 +12,7 @@ from kb.language.reading.matching import matched
 from kb.language.reading.noun_phrases import Noun, noun_phrase
 from kb.language.reading.reader import Reader
 from kb.language.reading.verb_phrases import VerbPhrase, begin, complete
-from kb.lexicon.english import PEOPLE
-from kb.lexicon.inflection import Form
+from kb.lexicon.english import PEOPLE, Form
 
 DONE = frozenset({"do", "doing", "done"})
 HAPPEN = frozenset({"happened", "happens", "happen", "happening", "done", "going"})

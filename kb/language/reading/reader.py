@@ -6,7 +6,7 @@ from kb.language.reading.function_words import is_manner, of_class, prepositions
 from kb.language.reading.verb_entries import VerbEntries
 from kb.language.tokens import Cursor
 from kb.language.vocabulary import Vocabulary
-from kb.lexicon.inflection import Form
+from kb.lexicon.english import Form
 
 STOPS = (
     *("determiner", "person", "pronoun", "auxiliary", "negation", "particle", "manner"),

@@ -13,7 +13,7 @@ from kb.language.reading.performed import performed
 from kb.language.reading.reader import Reader
 from kb.language.reading.verb_phrases import begin, complete
 from kb.language.tokens import Cursor
-from kb.lexicon.inflection import Form
+from kb.lexicon.english import Form
 
 BETWEEN = (",", ";", ":", "and", "but", "then", "or")
 """What may stand between two clauses."""

@@ -6,10 +6,9 @@ from functools import cached_property
 
 from kb.language.reading.function_words import of_class, prepositions
 from kb.language.vocabulary import Vocabulary
-from kb.lexicon.inflection import Form, lemmas
+from kb.lexicon.english import Form, lemmas
 from kb.lexicon.links import motion_senses, sense_links
-from kb.lexicon.tables import table
-from kb.lexicon.wordnet import Synset, wordnet
+from kb.lexicon.wordnet import Synset, table, wordnet
 
 EE, OTHER = -1, 0
 """Places of an end-effector and of what no tracker follows, beside those of objects."""

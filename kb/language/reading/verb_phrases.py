@@ -8,8 +8,7 @@ from kb.language.reading.function_words import is_next, of_class, prepositions
 from kb.language.reading.noun_phrases import Noun, begins_noun, noun_phrase
 from kb.language.reading.reader import CONNECTIVES, RELATIVES, Reader
 from kb.language.tokens import ARTICLES
-from kb.lexicon.english import name_of
-from kb.lexicon.inflection import Form
+from kb.lexicon.english import Form, name_of
 
 FOR, TO, WITH = "for", "to", "with"
 

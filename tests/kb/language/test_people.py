@@ -19,7 +19,7 @@ from kb.actionary import Actionary
 from kb.language import Instruction, Plan, Question, parse
 from kb.language.phrases import in_past
 from kb.language.vocabulary import Vocabulary
-from kb.lexicon.tables import table
+from kb.lexicon.wordnet import table
 
 HERE = Path(__file__).parent
 WORDS = Vocabulary(primitive_words(primitive_files()))

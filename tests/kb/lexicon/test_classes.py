@@ -8,10 +8,8 @@ from pathlib import Path
 import pytest
 
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
-from kb.lexicon.levin import levin_classes
-from kb.lexicon.links import class_links, sense_key, sense_links, thesis_claims
-from kb.lexicon.tables import table
-from kb.lexicon.wordnet import wordnet
+from kb.lexicon.links import class_links, levin_classes, sense_key, sense_links, thesis_claims
+from kb.lexicon.wordnet import table, wordnet
 
 WORDS = {each.name: each for each in primitive_words(primitive_files())}
 JUDGED = table("judged_senses")

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from capar.model.par import FeatureSet
-from kb.lexicon.fitting import Fit, Seen, fitting
 from kb.lexicon.links import PrimitiveWords
-from kb.lexicon.verbnet import Frame, Member, Predicate, VerbClass
-from kb.lexicon.verbnet_files import read_class
+from kb.lexicon.verbnet import Frame, Member, Predicate, VerbClass, read_class
+from kb.lexicon.verbs import Fit, fitting
+from kb.lexicon.verbs import SegmentFeatures as Seen
 
 EXAMPLE = Path(__file__).parent / "example-18.1.xml"
 WORDS = (

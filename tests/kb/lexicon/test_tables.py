@@ -6,10 +6,17 @@ from pathlib import Path
 
 import pytest
 
-from kb.lexicon.levin import above, book_order, levin_class, levin_classes
-from kb.lexicon.links import ThesisStatus, remarks, thesis_claims
-from kb.lexicon.tables import FOLDER, table
-from kb.reports.assembling import unstated_classes
+from kb.lexicon.links import (
+    ThesisStatus,
+    above,
+    book_order,
+    levin_class,
+    levin_classes,
+    remarks,
+    thesis_claims,
+)
+from kb.lexicon.wordnet import FOLDER, table
+from kb.reports.linguistics import unstated_classes
 
 SHARED = Path(os.environ.get("CAPAR_LINGUISTICS", Path(__file__).parents[4] / "shared/linguistics"))
 needs_shared = pytest.mark.skipif(

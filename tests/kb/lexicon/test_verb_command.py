@@ -11,7 +11,7 @@ from capar.model.errors import UnknownNameError
 from capar.model.facts import Intended
 from capar.model.par import FeatureSet
 from kb.actionary import Actionary
-from kb.lexicon.evidence import Seen, often, summed
+from kb.lexicon.verbs import Seen, often, summed
 
 RUNNER = CliRunner()
 STILL = FeatureSet("0", "0", "0", "hand", "0")

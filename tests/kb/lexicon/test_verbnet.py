@@ -16,8 +16,17 @@ from kb.lexicon.loading import (
     verbnet_class_of,
     verbnet_of,
 )
-from kb.lexicon.verbnet import Frame, Member, Phrase, Predicate, Role, VerbClass
-from kb.lexicon.verbnet_files import key_rate, read_class, read_verbnet
+from kb.lexicon.verbnet import (
+    Frame,
+    Member,
+    Phrase,
+    Predicate,
+    Role,
+    VerbClass,
+    key_rate,
+    read_class,
+    read_verbnet,
+)
 from kb.lexicon.wordnet import wordnet
 from kb.store.stores import Store, open_store
 

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from capar.model.errors import UnknownNameError
 from kb.lexicon.links import thesis_senses
-from kb.lexicon.tables import table
-from kb.lexicon.wordnet import Synset, frame_sentence, normal_key, wordnet
+from kb.lexicon.wordnet import Synset, frame_sentence, normal_key, table, wordnet
 
 SETTLED = [
     ("reach%2:42:00::", 6, "02691488", "i35083"),

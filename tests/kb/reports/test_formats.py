@@ -10,12 +10,11 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from kb.reports.formats import FORMATS, NOTES, write
 
 from capar.model.errors import UnknownNameError
 from capar.pipelines.linguistic_report import linguistics
 from kb.reports.linguistics import LinguisticReport
-from kb.reports.tables import NOTES
-from kb.reports.writing import FORMATS, write
 
 FLAGS = (
     "--headless",

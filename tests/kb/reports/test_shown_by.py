@@ -1,6 +1,7 @@
 """What shows a class: segments of its own primitives, not of what is more general."""
 
 import pytest
+from kb.reports.formats import coverage, write
 from observations import MUG, Piece, observation
 
 from capar.model.facts import Fact, Intended
@@ -8,10 +9,8 @@ from capar.model.observation import Observation
 from capar.model.par import FeatureSet
 from capar.pipelines.linguistic_report import linguistics, primitive_files
 from kb.actionary import Actionary
-from kb.lexicon.evidence import Case
+from kb.lexicon.verbs import Case
 from kb.reports.linguistics import ClassReport, Evidence, How, LinguisticReport
-from kb.reports.tables import coverage
-from kb.reports.writing import write
 
 STILL = FeatureSet("0", "0", "0", "hand", "0")
 

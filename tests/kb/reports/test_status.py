@@ -15,9 +15,9 @@ from capar.pipelines.linguistic_report import (
 )
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
-from kb.lexicon.evidence import Case
 from kb.lexicon.loading import load_verbnet
-from kb.lexicon.verbnet_files import read_class
+from kb.lexicon.verbnet import read_class
+from kb.lexicon.verbs import Case
 from kb.lexicon.wordnet import wordnet
 from kb.reports.linguistics import ClassReport, How, LinguisticReport, Status
 
