@@ -379,12 +379,11 @@ def linguistics(
     json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
 ) -> None:
     """Which verbs and classes of verbs the system addresses, with what proves it."""
-    from kb.reports.formats import write
-
     from capar.cli.options import open_words
     from capar.cli.output import check_writable, written
     from capar.pipelines.linguistic_report import cases_of, primitive_files
     from capar.pipelines.linguistic_report import linguistics as report_of
+    from kb.reports.formats import write
 
     if out is not None:
         check_writable(out)

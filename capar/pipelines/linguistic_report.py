@@ -22,7 +22,7 @@ from kb.lexicon.verbs import (
     seen_in,
     verbnet_members,
 )
-from kb.reports.linguistics import Derived, LinguisticReport, assemble
+from kb.reports.linguistics import LinguisticReport, assemble
 
 if TYPE_CHECKING:
     from kb.store.stores import Store
@@ -148,7 +148,7 @@ def linguistics(
     rows: dict[str, list[tuple[str, ...]]] = {}
     for predicate, arguments in answer.atoms:
         rows.setdefault(predicate, []).append(tuple(map(str, arguments)))
-    return assemble(Derived(rows), words, seen, members)
+    return assemble(rows, words, seen, members)
 
 
 def _stems(files: Sequence[Path]) -> list[str]:

@@ -1,11 +1,33 @@
-"""The linguistic report as values: classes, senses, statuses with their evidence, coverage."""
+"""The linguistic report: verb classes with status and evidence, senses, claims, coverage."""
 
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TypeAlias
 
-from kb.lexicon.links import PrimitiveWords, Remark, SenseLink, ThesisClaim, ThesisStatus
-from kb.lexicon.wordnet import Synset
+from kb.lexicon.english import words_of
+from kb.lexicon.links import (
+    PrimitiveWords,
+    Remark,
+    SenseLink,
+    ThesisClaim,
+    ThesisStatus,
+    above,
+    book_order,
+    levin_class,
+    levin_classes,
+    motion_senses,
+    remarks,
+    sense_links,
+    thesis_claims,
+    thesis_senses,
+)
+from kb.lexicon.verbs import Seen, doubts_of, total
+from kb.lexicon.wordnet import Synset, table, wordnet
+
+Row: TypeAlias = tuple[str, ...]
+"""The arguments of an atom that the lexical rules derived."""
 
 
 class Status(StrEnum):
@@ -18,9 +40,7 @@ class Status(StrEnum):
     @property
     def words(self) -> str:
         """The status as people read it."""
-        return {"addressed": "addressed", "partly": "in part", "not_addressed": "not addressed"}[
-            self.value
-        ]
+        return "in part" if self is Status.PARTLY else self.value.replace("_", " ")
 
 
 class How(StrEnum):
@@ -38,12 +58,15 @@ class How(StrEnum):
     @property
     def words(self) -> str:
         """The standing as people read it."""
-        return {
-            "addressed": "addressed",
-            "general": "not addressed, only what is more general",
-            "purpose": "only as a stated purpose",
-            "missing": "not addressed",
-        }[self.value]
+        return _HOW_WORDS[self.value]
+
+
+_HOW_WORDS = {
+    "addressed": "addressed",
+    "general": "not addressed, only what is more general",
+    "purpose": "only as a stated purpose",
+    "missing": "not addressed",
+}
 
 
 class Evidence(StrEnum):
@@ -140,20 +163,13 @@ class ClassReport:
         return tuple(each for each in self.verbs if each.counts)
 
     @property
-    def addressed(self) -> int:
-        """How many of the verbs are addressed."""
-        return sum(each.how is How.ADDRESSED for each in self.verbs)
-
-    @property
     def reason(self) -> str:
         """Why the status is what it is, in a sentence."""
         gone = [each for each in self.judged if each.how is not How.ADDRESSED]
         if not gone:
-            return f"By {', '.join(self._doers())}."
+            doers = sorted({name for each in self.judged for name in each.primitives})
+            return f"By {', '.join(doers)}."
         return " ".join(_about(each) for each in gone)
-
-    def _doers(self) -> list[str]:
-        return sorted({name for each in self.judged for name in each.primitives})
 
 
 def _about(verb: VerbReport) -> str:
@@ -218,12 +234,201 @@ class LinguisticReport:
     """What rule files state of words that WordNet or Levin does not know."""
 
 
-def share(part: int, whole: int) -> str:
-    """A part of a whole as people read it: ``3 of 4 (75 %)``."""
-    percent = f" ({round(100 * part / whole)} %)" if whole else ""
-    return f"{part} of {whole}{percent}"
+def assemble(
+    derived: Mapping[str, Sequence[Row]],
+    words: Sequence[PrimitiveWords],
+    seen: Sequence[Seen],
+    members: Mapping[str, frozenset[str]],
+) -> LinguisticReport:
+    """The report over what was derived, the primitives' words, and what was observed."""
+    parts = _Parts(derived, words, seen, members)
+    numbers = sorted(parts.status, key=book_order)
+    classes = tuple(parts.class_report(number) for number in numbers)
+    return LinguisticReport(
+        classes=classes,
+        claims=thesis_claims(),
+        senses=tuple(
+            _sense_row(link)
+            for link in (
+                *thesis_senses(),
+                *(s for word in sorted(words) for s in sense_links(word)),
+            )
+        ),
+        primitives=tuple(sorted(words)),
+        remarks=remarks(),
+        coverage=_coverage(
+            classes, seen, {each for number in numbers for each in parts.showing(number)}
+        ),
+        observations=tuple(sorted({each.observation for each in seen})),
+        verbnet=bool(members),
+        doubts=doubts_of(sorted(words)),
+    )
 
 
-def named(values: Sequence[str], *, none: str = "none") -> str:
-    """Values as a list, or a word for none."""
-    return ", ".join(values) or none
+class _Parts:
+    def __init__(
+        self,
+        derived: Mapping[str, Sequence[Row]],
+        words: Sequence[PrimitiveWords],
+        seen: Sequence[Seen],
+        members: Mapping[str, frozenset[str]],
+    ) -> None:
+        def last_by(predicate: str) -> dict[Row, tuple[str, ...]]:
+            """Last arguments by those before, sorted."""
+            return _grouped((row[:-1], row[-1]) for row in derived.get(predicate, ()))
+
+        self.status = {row[0]: Status(row[1]) for row in derived.get("status", ())}
+        self.counts = last_by("counts")
+        self.linked = _grouped(((row[1],), row[0]) for row in derived.get("linked", ()))
+        self.how = {
+            How.ADDRESSED: last_by("addressed"),
+            How.GENERAL: last_by("only_general"),
+            How.PURPOSE: last_by("only_purpose"),
+        }
+        self.missing = last_by("missing")
+        self.own = {(number, name) for number, _, name in derived.get("addressed", ())}
+        self.purposes = set(derived.get("only_purpose", ()))
+        self.proofs = defaultdict(list)
+        for number, primitive, kind, where in derived.get("proof", ()):
+            self.proofs[number].append(Proof(primitive, kind, where))
+        self.words = {word.name: word for word in words}
+        self.files = {word.name: word.file for word in words if word.file}
+        self.seen = seen
+        self.members = members
+
+    def showing(self, number: str) -> tuple[Seen, ...]:
+        """What was seen of a class: its verbs' own primitives, and what was stated to be done."""
+        return tuple(
+            each
+            for each in self.seen
+            if (number, each.primitive) in self.own
+            or (number, words_of(each.purpose), each.primitive) in self.purposes
+        )
+
+    def _proofs(self, number: str, showing: Sequence[Seen]) -> tuple[Proof, ...]:
+        """The derived proofs, without those by what is only more general."""
+        observed = {(each.primitive, "observed", each.observation) for each in showing}
+        return tuple(
+            each
+            for each in self.proofs[number]
+            if (number, each.primitive) in self.own
+            or (each.primitive, each.kind, each.where) in observed
+        )
+
+    def class_report(self, number: str) -> ClassReport:
+        levin = levin_class(number)
+        judged = set(self.counts.get((number,), ()))
+        verbs = sorted(judged | set(self.members.get(number, ())))
+        reports = tuple(self._verb(number, verb, counts=verb in judged) for verb in verbs)
+        doers = sorted({name for each in reports if each.counts for name in each.primitives})
+        showing = self.showing(number)
+        return ClassReport(
+            number=number,
+            title=levin.title,
+            size=levin.size,
+            status=self.status[number],
+            claims=tuple(each for each in thesis_claims() if each.levin == number),
+            verbs=reports,
+            primitives=self.linked.get((number,), ()),
+            files=tuple(sorted({self.files[each] for each in doers if each in self.files})),
+            proofs=self._proofs(number, showing),
+            remarks=tuple(each for each in remarks() if _concerns(each.levin, number)),
+            segments=total(showing),
+        )
+
+    def _verb(self, number: str, verb: str, *, counts: bool) -> VerbReport:
+        key = (number, verb)
+        how = next((each for each, found in self.how.items() if key in found), How.MISSING)
+        primitives = self.how[how][key] if how in self.how else ()
+        own = primitives if how is How.ADDRESSED else ()
+        segments = total(each for each in self.seen if each.primitive in own)
+        tested = (each for each in self.proofs.get(number, ()) if each.kind == "tested")
+        cases = tuple(sorted({each.where for each in tested if each.primitive in own}))
+        evidence = Evidence.NONE
+        if own:
+            unseen = Evidence.TESTED if cases else Evidence.RULE
+            evidence = Evidence.OBSERVED if segments else unseen
+        return VerbReport(
+            verb=verb,
+            how=how,
+            primitives=primitives,
+            lacks=_needs(number, verb, self.missing.get(key, ())),
+            senses=self._senses(verb, primitives if how is How.ADDRESSED else ()),
+            counts=counts,
+            evidence=evidence,
+            segments=segments,
+            cases=cases,
+        )
+
+    def _senses(self, verb: str, primitives: Sequence[str]) -> tuple[Synset, ...]:
+        """The senses that the primitives have the verb in; without any, those as a motion."""
+        own = (link for name in primitives for link in sense_links(self.words[name]))
+        keys = dict.fromkeys(link.key for link in own if link.verb == verb)
+        found = tuple(
+            wordnet().of_key(each) for each in keys or motion_senses(verb) if each in wordnet()
+        )
+        return found or tuple(synset for _, synset in wordnet().of_lemma(verb)[:1])
+
+
+def _concerns(remark: str, number: str) -> bool:
+    """Whether a remark about a class belongs to another that holds it."""
+    known = remark in levin_classes()
+    return remark == number or (known and number in above(remark))
+
+
+def _grouped(pairs: Iterable[tuple[Row, str]]) -> dict[Row, tuple[str, ...]]:
+    found: dict[Row, set[str]] = defaultdict(set)
+    for key, value in pairs:
+        found[key].add(value)
+    return {key: tuple(sorted(each)) for key, each in found.items()}
+
+
+def _needs(number: str, verb: str, lacking: Sequence[str]) -> tuple[str, ...]:
+    said = {
+        row["need"]: row["words"]
+        for row in table("needs")
+        if row["class"] == number and row["verb"] == verb
+    }
+    return tuple(said.get(each, "a primitive of this class with this verb") for each in lacking)
+
+
+def _sense_row(link: SenseLink) -> SenseRow:
+    if link.key not in wordnet():
+        return SenseRow(link, None, 0)
+    synset = wordnet().of_key(link.key)
+    number = next((sense.number for sense in synset.senses if sense.key == link.key), 0)
+    return SenseRow(link, synset, number)
+
+
+def _coverage(
+    classes: Sequence[ClassReport], seen: Sequence[Seen], showing: Iterable[Seen]
+) -> Coverage:
+    verbs = [each for report in classes for each in report.verbs]
+    return Coverage(
+        classes=len(classes),
+        classes_addressed=sum(each.status is Status.ADDRESSED for each in classes),
+        classes_partly=sum(each.status is Status.PARTLY for each in classes),
+        verbs=len(verbs),
+        verbs_addressed=sum(verb.how is How.ADDRESSED for verb in verbs),
+        verbs_general=sum(verb.how is How.GENERAL for verb in verbs),
+        verbs_purpose=sum(verb.how is How.PURPOSE for verb in verbs),
+        segments=total(seen),
+        segments_named=total(each for each in seen if each.primitive),
+        segments_in_classes=total(showing),
+        unstated=len(unstated_classes()),
+    )
+
+
+def unstated_classes() -> tuple[str, ...]:
+    """Classes of which the thesis's classification says nothing, in the book's order.
+
+    What it denies of a whole class it denies of the class's parts; what it claims for a verb it
+    claims for the verb's own class alone (thesis 6.1).
+    """
+    stated = {claim.levin for claim in thesis_claims() if claim.levin and claim.section == "6.1"}
+    denied = {claim.levin for claim in thesis_claims() if claim.status is ThesisStatus.NOT}
+    return tuple(
+        each.number
+        for each in levin_classes().values()
+        if each.size and each.number not in stated and denied.isdisjoint(above(each.number))
+    )

@@ -3,11 +3,11 @@
 from pathlib import Path
 
 import pytest
-from kb.reports.formats import FORMATS, write
 
 from capar.pipelines.linguistic_report import linguistics, primitive_files, primitive_words
 from kb.lexicon.links import sense_links
 from kb.lexicon.verbs import doubts, doubts_of
+from kb.reports.formats import FORMATS, write
 
 
 def cover(folder: Path, stated: str) -> Path:

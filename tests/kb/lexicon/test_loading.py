@@ -56,7 +56,7 @@ def _other_links_replace_the_old(store: Store) -> None:
 def test_a_graph_without_its_mark_is_made_anew() -> None:
     store = open_store(None)
     load_words(store, WORDS)
-    graph = loading.graph("levin")
+    graph = loading.graph_of("levin")
     store.change(f"DELETE WHERE {{ GRAPH {graph} {{ {graph} ?p ?o }} }}")
     assert not has_source(store, "levin")
     assert load_words(store, WORDS)

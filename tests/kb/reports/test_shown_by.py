@@ -1,7 +1,6 @@
 """What shows a class: segments of its own primitives, not of what is more general."""
 
 import pytest
-from kb.reports.formats import coverage, write
 from observations import MUG, Piece, observation
 
 from capar.model.facts import Fact, Intended
@@ -10,6 +9,7 @@ from capar.model.par import FeatureSet
 from capar.pipelines.linguistic_report import linguistics, primitive_files
 from kb.actionary import Actionary
 from kb.lexicon.verbs import Case
+from kb.reports.formats import coverage, write
 from kb.reports.linguistics import ClassReport, Evidence, How, LinguisticReport
 
 STILL = FeatureSet("0", "0", "0", "hand", "0")
@@ -85,9 +85,8 @@ def test_a_segment_counts_in_a_class_by_a_verb_of_its_own_primitive() -> None:
 
 def test_nobody_reads_a_more_general_verb_as_seen(fidget: LinguisticReport) -> None:
     text = " ".join(write(fidget, "text").split())
-    assert (
-        "kiss: not addressed; only what is more general is: Touch, TouchOneself, TouchWith." in text
-    )
+    why = "kiss: not addressed; only what is more general is: Touch, TouchOneself, TouchWith."
+    assert why in text
     figures = dict(coverage(fidget))
     general = [
         each for report in fidget.classes for each in report.verbs if each.how is How.GENERAL
