@@ -13,9 +13,9 @@ from pyoxigraph import Store as Oxigraph
 
 from kb.actionary import Actionary
 from kb.errors import QueryError, StoreError, TimeLimitError
-from kb.store import query_worker as asker
 from kb.store import sparql
 from kb.store.answers import Answer
+from kb.store.stores import user_message
 
 ENDLESS = "SELECT (COUNT(*) AS ?n) WHERE { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i . ?j ?k ?l }"
 
@@ -208,7 +208,7 @@ def test_what_is_missing_is_never_something_that_is_refused() -> None:
         try:
             store.query(text)
         except SyntaxError as error:
-            told.append((text, str(error), asker.user_message(str(error))))
+            told.append((text, str(error), user_message(str(error))))
     assert any("SERVICE" in raw for _, raw, _ in told)
     for text, _, said in told:
         assert "SERVICE" not in said and "LATERAL" not in said, text
