@@ -7,66 +7,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli.options import Place, Wait, require_actionary
+from capar.cli.options import Json, Place, Wait, require_actionary, rule_words
 from capar.cli.output import check_writable, print_fields, print_json, print_names, written
-from capar.model.errors import UnknownNameError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from kb.corrections import Span
 
+agents = typer.Typer(no_args_is_help=True, help="Who performs: declared, seen, and who is who.")
+objects = typer.Typer(no_args_is_help=True, help="What is known of objects, by their kinds.")
 
-def declare_abilities(
-    actions: Sequence[str],
-    *,
-    agent: str = "",
-    kind: str = "",
-    actionary: str | None,
-    wait_s: float,
-    json: bool,
-) -> None:
-    """Declare what an agent is able to do, or what a kind of object can be used for, and say so.
-
-    Args:
-        actions: The names of the actions.
-        agent: The agent; empty where it is a kind of object.
-        kind: The kind of object; empty where it is an agent.
-        actionary: The Actionary; None for the usual one.
-        wait_s: How long to wait for another writer [s].
-        json: Whether to print JSON.
-
-    Raises:
-        UnknownNameError: There is no such agent or kind of object.
-    """
-    from kb import Actionary
-
-    require_actionary(actionary, observed=True)
-    with Actionary.open(actionary, wait_s=wait_s) as opened:
-        known = opened.agents() if agent else opened.object_kinds()
-        if (agent or kind) not in known:
-            raise UnknownNameError("agent" if agent else "kind of object", agent or kind, known)
-        for action in actions:
-            opened.add_ability(action, agent=agent, kind=kind)
-    if json:
-        print_json({"agent" if agent else "kind": agent or kind, "declared": actions})
-    else:
-        typer.echo(f"declared of {agent or f'every {kind}'}: {', '.join(actions)}")
+Agent = Annotated[str, typer.Argument(help="An agent, as `capar agent list` prints it.")]
+LABEL_COLUMNS = ("link", "start_s", "end_s", "label", "object")
+"""Of a table of labels, as `capar evaluate` reads it."""
 
 
-agents = typer.Typer(no_args_is_help=True)
-
-Name = Annotated[str, typer.Argument(help="An agent, as `capar agent list` prints it.")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-
-
-@agents.callback()
-def _root() -> None:
-    """Say who performs: declared agents, those that were seen, and who is who."""
-
-
-@agents.command()
-def new(
+@agents.command("new")
+def new_agent(
     name: Annotated[str, typer.Argument(help="What the agent is called.")],
     kind: Annotated[str, typer.Option(help="Its kind: man, woman, robot ...")] = "",
     can: Annotated[
@@ -88,21 +44,21 @@ def new(
         typer.echo(f"declared {name}")
 
 
-@agents.command()
-def can(
-    name: Name,
+@agents.command("can")
+def agent_can(
+    name: Agent,
     actions: Annotated[list[str], typer.Argument(help="Actions that it is able to do.")],
     wait: Wait = 0.0,
     actionary: Place = None,
     json: Json = False,
 ) -> None:
-    """Declare what an agent that is known is able to do, beside what was observed."""
-    declare_abilities(actions, agent=name, actionary=actionary, wait_s=wait, json=json)
+    """Declare what a known agent is able to do, beside what was observed."""
+    _declare(actions, agent=name, actionary=actionary, wait_s=wait, json=json)
 
 
 @agents.command("list")
 def list_agents(actionary: Place = None, json: Json = False) -> None:
-    """List every agent; one without a name is called by the capture that it is of."""
+    """List every agent; one without a name is called by its capture."""
     from kb import Actionary
 
     with Actionary.open(actionary, read_only=True) as opened:
@@ -110,24 +66,24 @@ def list_agents(actionary: Place = None, json: Json = False) -> None:
     print_names(found, json=json)
 
 
-@agents.command()
-def show(name: Name, actionary: Place = None, json: Json = False) -> None:
-    """Show what is known of an agent, field by field, and of which fields nothing is recorded."""
+@agents.command("show")
+def show_agent(name: Agent, actionary: Place = None, json: Json = False) -> None:
+    """Show what is known of an agent, field by field."""
     from kb import Actionary
 
     with Actionary.open(actionary, read_only=True) as opened:
         print_fields(name, opened.agent_profile(name), json=json)
 
 
-@agents.command()
-def same(
-    name: Name,
+@agents.command("same")
+def same_agent(
+    name: Agent,
     other: Annotated[str, typer.Argument(help="The agent that is the same one.")],
     wait: Wait = 0.0,
     actionary: Place = None,
     json: Json = False,
 ) -> None:
-    """Make two agents one: what OTHER did, and will be observed to do, is NAME's."""
+    """Make two agents one: what OTHER does is NAME's, also in future."""
     from kb import Actionary
 
     require_actionary(actionary, observed=True)
@@ -139,18 +95,8 @@ def same(
         typer.echo(f"{other} is {name}")
 
 
-objects = typer.Typer(no_args_is_help=True)
-
-Json_object_command = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-
-
-@objects.callback()
-def _root_object_command() -> None:
-    """Say what is known of objects, which is kept by their kinds."""
-
-
 @objects.command("list")
-def list_objects(actionary: Place = None, json: Json_object_command = False) -> None:
+def list_objects(actionary: Place = None, json: Json = False) -> None:
     """List every kind of object that was observed or declared."""
     from kb import Actionary
 
@@ -159,40 +105,63 @@ def list_objects(actionary: Place = None, json: Json_object_command = False) -> 
     print_names(found, json=json)
 
 
-@objects.command()
-def can_object_command(
+@objects.command("can")
+def object_can(
     kind: Annotated[str, typer.Argument(help="A kind of object, as `capar object list` has it.")],
-    actions: Annotated[list[str], typer.Argument(help="Actions that it lends itself to.")],
+    actions: Annotated[list[str], typer.Argument(help="Actions that it can be used for.")],
     wait: Wait = 0.0,
     actionary: Place = None,
-    json: Json_object_command = False,
+    json: Json = False,
 ) -> None:
     """Declare what a kind of object can be used for, beside what was observed."""
-    declare_abilities(actions, kind=kind, actionary=actionary, wait_s=wait, json=json)
+    _declare(actions, kind=kind, actionary=actionary, wait_s=wait, json=json)
 
 
-@objects.command()
-def show_object_command(
+@objects.command("show")
+def show_object(
     name: Annotated[str, typer.Argument(help="A kind of object, or the name of an object.")],
     actionary: Place = None,
-    json: Json_object_command = False,
+    json: Json = False,
 ) -> None:
-    """Show what is known of a kind of object, field by field, and which fields are empty."""
+    """Show what is known of a kind of object, field by field."""
     from kb import Actionary
 
     with Actionary.open(actionary, read_only=True) as opened:
         print_fields(name, opened.object_profile(name), json=json)
 
 
-COLUMNS = ("link", "start_s", "end_s", "label", "object")
-"""Of a table of labels, as `capar evaluate` reads it."""
+def _declare(
+    actions: Sequence[str],
+    *,
+    agent: str = "",
+    kind: str = "",
+    actionary: str | None,
+    wait_s: float,
+    json: bool,
+) -> None:
+    """Declare what an agent, or every object of a kind, can do or be used for."""
+    from capar.model.errors import UnknownNameError
+    from kb import Actionary
+
+    require_actionary(actionary, observed=True)
+    with Actionary.open(actionary, wait_s=wait_s) as opened:
+        known = opened.agents() if agent else opened.object_kinds()
+        if (agent or kind) not in known:
+            raise UnknownNameError("agent" if agent else "kind of object", agent or kind, known)
+        for action in actions:
+            opened.add_ability(action, agent=agent, kind=kind)
+    if json:
+        print_json({"agent" if agent else "kind": agent or kind, "declared": actions})
+    else:
+        typer.echo(f"declared of {agent or f'every {kind}'}: {', '.join(actions)}")
 
 
 def correct(
     segment: Annotated[
         str,
         typer.Argument(
-            metavar="SEGMENT", help="CAPTURE/END_EFFECTOR/INDEX; CAPTURE alone shows its account."
+            metavar="SEGMENT",
+            help="CAPTURE/END_EFFECTOR/INDEX; CAPTURE alone prints what was done in it.",
         ),
     ],
     name: Annotated[str, typer.Option(help="What was done in it.")] = "",
@@ -204,18 +173,20 @@ def correct(
     join: Annotated[bool, typer.Option("--join", help="It is one with the next.")] = False,
     by: Annotated[str, typer.Option(metavar="PERSON", help="Who says so.")] = "",
     labels: Annotated[
-        Path | None, typer.Option(help="Write the account as labels, a CSV table, to this file.")
+        Path | None, typer.Option(help="Write what was done as labels, a CSV table, to this file.")
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Json = False,
     wait: Wait = 0.0,
     actionary: Place = None,
 ) -> None:
-    """Keep a person's claim about a SEGMENT, and print what was done according to all claims.
+    """Keep a person's claim about a segment.
 
-    The machine's segments stay as they are, and claims stay when the capture is observed again.
-    Segments are counted as this command prints them. `capar query --corrected` asks what persons
-    say; `capar query corrections` lists their claims.
+    Then what was done according to all claims is printed. The machine's segments stay as they are,
+    and claims stay when the capture is observed again. Segments are counted as this command prints
+    them. `capar query --corrected` asks what persons say; `capar query corrections` lists claims.
     """
+    from dataclasses import replace
+
     from capar.model.observation import split_capture
     from kb import Actionary
     from kb.corrections import Correction, account
@@ -228,34 +199,14 @@ def correct(
     capture, address = segment, None
     if asked or by:
         capture, address = split_capture(segment)
-    change = Correction(name, start, end, split, join) if address else None
-    with Actionary.open(actionary, read_only=change is None, wait_s=wait) as opened:
-        if address and change:
-            from dataclasses import replace
-
+    with Actionary.open(actionary, read_only=address is None, wait_s=wait) as opened:
+        if address:
+            change = Correction(name, start, end, split, join)
             claim(opened.store, replace(address, capture=capture), change, by=by)
             _note_new_name(name, actionary)
         spans = account(opened.store, capture)
     if labels is not None:
         _write_labels(labels, spans)
-    _print(capture, spans, json=json)
-
-
-def _note_new_name(name: str, actionary: str | None) -> None:
-    """Say that no rule gives the name, which may be meant so, with the nearest that one gives."""
-    from difflib import get_close_matches
-
-    from capar.cli.options import rule_words
-    from capar.model.par import UNKNOWN
-
-    known = [words.name for words in rule_words(None, actionary)]
-    if name and name not in {*known, UNKNOWN}:
-        near = get_close_matches(name, known, n=1)
-        hint = f"; did you mean {near[0]!r}?" if near else ""
-        typer.echo(f"note: no rule gives the name {name!r}{hint}", err=True)
-
-
-def _print(capture: str, spans: "Sequence[Span]", *, json: bool) -> None:
     if json:
         print_json(list(spans))
         return
@@ -268,10 +219,23 @@ def _print(capture: str, spans: "Sequence[Span]", *, json: bool) -> None:
         )
 
 
+def _note_new_name(name: str, actionary: str | None) -> None:
+    """Say that no rule gives the name, which may be meant so, and the nearest that one gives."""
+    from difflib import get_close_matches
+
+    from capar.model.par import UNKNOWN
+
+    known = [words.name for words in rule_words(None, actionary)]
+    if name and name not in {*known, UNKNOWN}:
+        near = get_close_matches(name, known, n=1)
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        typer.echo(f"note: no rule gives the name {name!r}{hint}", err=True)
+
+
 def _write_labels(path: Path, spans: "Sequence[Span]") -> None:
     with written(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
-        table.writerow(COLUMNS)
+        table.writerow(LABEL_COLUMNS)
         for span in spans:
             first = span.objects.split(" ")[0]
             table.writerow((span.ee, span.start_s, span.end_s, span.name, first))
@@ -282,7 +246,7 @@ def forget(
     wait: Wait = 0.0,
     actionary: Place = None,
 ) -> None:
-    """Take observations back, and everything that nothing else says."""
+    """Remove observations, and everything that nothing else says."""
     from kb import Actionary
 
     with Actionary.open(actionary, wait_s=wait) as opened:

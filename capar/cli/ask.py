@@ -1,21 +1,16 @@
-"""Ask the Actionary: questions, pictures of actions, checks, and an HTTP server."""
+"""Ask the Actionary: questions, drawings of actions, checks, and an HTTP server."""
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeAlias
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli.options import Place
+from capar.cli.options import Corrected, Json, Place
 from capar.cli.output import console, print_json
 
 if TYPE_CHECKING:
     from kb.store.answers import Answer
-    from kb.store.stores import Store
-
-
-Given: TypeAlias = dict[str, str]
-"""What a named question is asked of, by parameter."""
 
 
 def _names(incomplete: str) -> list[tuple[str, str]]:
@@ -58,32 +53,37 @@ def query(
     time_limit: Annotated[
         float, typer.Option(metavar="SECONDS", help="How long the question may take.")
     ] = 30.0,
-    corrected: Annotated[
-        bool,
-        typer.Option("--corrected", help="Ask what persons say of segments (`capar correct`)."),
-    ] = False,
+    corrected: Corrected = False,
     actionary: Place = None,
 ) -> None:
-    """Ask the Actionary a QUESTION; see --list. It can neither write nor run for ever."""
+    """Ask a named question (see --list) or any SPARQL.
+
+    A query can neither write nor run longer than --time-limit.
+    """
     from capar.model.errors import UnknownNameError
-    from kb.queries.formats import FORMATS
+    from kb import Actionary
+    from kb.queries.formats import FORMATS, listing
+    from kb.queries.questions import check_known, notes
+    from kb.queries.questions import question as named
+    from kb.store.sparql import unknown_terms
 
     chosen = "json" if json else format_
     if chosen not in FORMATS:
         raise UnknownNameError("format", chosen, FORMATS)
     if list_ or question is None:
-        _list(chosen)
+        _print(listing(), chosen)
         return
     given = _given(parameters or [], question)
     raw = _raw(question)
     text = _text(question, raw, given)
-    _warn_of_unknown_terms(raw or "")
-    from kb import Actionary
-    from kb.queries.questions import check_known, notes
-    from kb.queries.questions import question as named
-
+    for sentence in unknown_terms(raw or ""):
+        typer.echo(f"warning: {sentence}", err=True)
     with Actionary.open(actionary, read_only=True) as opened:
-        store = _corrected(opened.store) if corrected else opened.store
+        store = opened.store
+        if corrected:
+            from kb.corrections import corrected as corrected_copy
+
+            store = corrected_copy(store)
         answer = store.ask_within(text, seconds=time_limit)
         if raw is None and not answer.rows:
             check_known(store, named(question), given)
@@ -96,20 +96,8 @@ def query(
                 typer.echo("nothing found", err=True)
 
 
-def _warn_of_unknown_terms(query: str) -> None:
-    from kb.store.sparql import unknown_terms
-
-    for sentence in unknown_terms(query):
-        typer.echo(f"warning: {sentence}", err=True)
-
-
-def _corrected(store: "Store") -> "Store":
-    from kb.corrections import corrected
-
-    return corrected(store)
-
-
-def _given(parameters: list[str], asked: str) -> Given:
+def _given(parameters: list[str], asked: str) -> dict[str, str]:
+    """What a named question is asked of, by parameter."""
     from capar.model.errors import CaparError
     from kb.queries.questions import questions
 
@@ -124,7 +112,7 @@ def _given(parameters: list[str], asked: str) -> Given:
     return given
 
 
-def _text(question: str, raw: str | None, given: Given) -> str:
+def _text(question: str, raw: str | None, given: dict[str, str]) -> str:
     """The SPARQL that is meant."""
     from capar.model.errors import CaparError
     from kb.queries.questions import question as named
@@ -138,7 +126,8 @@ def _text(question: str, raw: str | None, given: Given) -> str:
 
 
 def _raw(question: str) -> str | None:
-    """SPARQL that was given itself, or by a file or standard input."""
+    """SPARQL that was given itself, or by a file or standard input; None for a named question."""
+    from capar.model.errors import FileError
     from kb.store import sparql
 
     if question == "-":
@@ -146,27 +135,16 @@ def _raw(question: str) -> str | None:
     if any(each in question for each in "{\n"):
         return question
     path = Path(question)
-    if path.suffix in {".rq", ".sparql"} or _is_file(path):
-        from capar.model.errors import FileError
-
+    try:
+        file = path.is_file()
+    except OSError:  # too long for a file's name
+        file = False
+    if path.suffix in {".rq", ".sparql"} or file:
         try:
             return path.read_text("utf-8")
         except UnicodeDecodeError as error:
             raise FileError(path, f"cannot be read as a query ({error})") from None
     return question if sparql.is_meant(question) else None
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except OSError:  # too long for a file's name
-        return False
-
-
-def _list(chosen: str) -> None:
-    from kb.queries.formats import listing
-
-    _print(listing(), chosen)
 
 
 def _print(answer: "Answer", chosen: str) -> None:
@@ -185,7 +163,7 @@ def show(
     format_: Annotated[str, typer.Option("--format", help="text, svg or turtle.")] = "text",
     actionary: Place = None,
 ) -> None:
-    """Draw the complex action NAME: its steps, their shares of time, and who was seen to do it."""
+    """Draw a complex action: its steps, and who was seen to do it."""
     from capar.model.errors import UnknownNameError
     from kb import Actionary
     from kb.reports.complex_actions import FORMATS
@@ -196,43 +174,18 @@ def show(
         typer.echo(FORMATS[format_](opened, name), nl=False)
 
 
-def serve(
-    host: Annotated[str, typer.Option(help="Where to listen; by default on this computer.")] = (
-        "127.0.0.1"
-    ),
-    port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes any free one.")] = 7879,
-    token: Annotated[
-        str,
-        typer.Option(envvar="CAPAR_TOKEN", help="Let clients that bear this token add statements."),
-    ] = "",
-    time_limit: Annotated[float, typer.Option(help="For a query, in seconds.")] = 30.0,
-    actionary: Place = None,
-) -> None:
-    """Answer SPARQL and named questions over HTTP, until Ctrl-C; / lists what can be asked."""
-    from kb import Actionary
-    from kb.serving.http_server import ActionaryServer
-    from kb.serving.service import Service
-    from kb.store.stores import place
-
-    where = place(actionary)
-    with Actionary.open(where, read_only=True) as opened:
-        count = len(opened.observations())
-    with ActionaryServer(Service(where, token, time_limit), host=host, port=port) as server:
-        if not server.loopback:
-            typer.echo(f"capar: {host} can be reached from other computers", err=True)
-        typer.echo(f"{where} ({count} observations) is at {server.url}", err=True)
-        server.serve_forever()
-
-
 def check(
     shacl: Annotated[
         bool,
-        typer.Option("--shacl", help="Have pySHACL judge every observation as well; minutes."),
+        typer.Option("--shacl", help="Have pySHACL check every observation as well; minutes."),
     ] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print the problems as JSON.")] = False,
+    json: Json = False,
     actionary: Place = None,
 ) -> None:
-    """Check that every statement can be read, and every observation: shapes, NLTs, references."""
+    """Check that the Actionary is whole and valid.
+
+    Every statement is read, and every observation checked: shapes, NLTs, references.
+    """
     from kb import Actionary
     from kb.store_checks import check as checked
 
@@ -248,3 +201,36 @@ def check(
         typer.echo(f"{count} observations, {len(problems)} problems")
     if problems:
         raise typer.Exit(2)
+
+
+def serve(
+    host: Annotated[str, typer.Option(help="Where to listen; by default on this computer.")] = (
+        "127.0.0.1"
+    ),
+    port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes any free one.")] = 7879,
+    token: Annotated[
+        str,
+        typer.Option(envvar="CAPAR_TOKEN", help="Let clients that bear this token add statements."),
+    ] = "",
+    time_limit: Annotated[
+        float, typer.Option(metavar="SECONDS", help="How long a query may take.")
+    ] = 30.0,
+    actionary: Place = None,
+) -> None:
+    """Answer SPARQL and named questions over HTTP.
+
+    It runs until Ctrl-C; / lists what can be asked.
+    """
+    from kb import Actionary
+    from kb.serving.http_server import ActionaryServer
+    from kb.serving.service import Service
+    from kb.store.stores import place
+
+    where = place(actionary)
+    with Actionary.open(where, read_only=True) as opened:
+        count = len(opened.observations())
+    with ActionaryServer(Service(where, token, time_limit), host=host, port=port) as server:
+        if not server.loopback:
+            typer.echo(f"capar: {host} can be reached from other computers", err=True)
+        typer.echo(f"{where} ({count} observations) is at {server.url}", err=True)
+        server.serve_forever()

@@ -1,19 +1,17 @@
 """Look at captures: what a file holds, a first capture.toml, a picture, the measured facts."""
 
-import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from capar.cli.options import Beside, Rules, Set, Steady, rule_base
-from capar.cli.output import console, print_json
+from capar.cli.options import Beside, Capture, Json, ProfileName, Rules, Set, Steady, rule_base
+from capar.cli.output import console, print_json, written
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from capar.model.capture import Capture, Notice
-
+    from capar.model.capture import Capture as CaptureData
+    from capar.model.capture import Notice
 
 STREAM_COLUMNS = (
     "stream", "kind", "s", "Hz", "jitter ms", "lost", "longest gap s", "rest mm", "rest deg",
@@ -26,44 +24,41 @@ def inspect(
     place: Annotated[
         str, typer.Argument(help="A folder with a capture.toml (and :take), or a motion file.")
     ],
-    as_json: Annotated[bool, typer.Option("--json", help="Print for machines.")] = False,
+    json: Json = False,
     calibration: Annotated[
         bool,
-        typer.Option("--calibration", help="Say what is decided once for the whole capture."),
+        typer.Option("--calibration", help="Print what is decided once for the whole capture."),
     ] = False,
     set_: Set = None,
 ) -> None:
-    """Say what a capture holds: streams, rate, gaps, noise, ranges and near pairs."""
+    """Say what a capture or motion file holds.
+
+    That is its streams with rate, gaps, noise and range, and which bodies come near each other.
+    """
     if calibration:
-        _calibration(place, set_ or [], as_json=as_json)
+        _calibration(place, set_ or [], json=json)
         return
-    report = _report(place)
-    if as_json:
+    path = Path(place)
+    bundled = path.suffix == ".toml" or not path.exists() or (path / "capture.toml").is_file()
+    report = _of_capture(place) if bundled else _of_file(path)
+    if json:
         print_json(report, sort_keys=True)
     else:
         _show(report)
 
 
-def _calibration(place: str, settings: list[str], *, as_json: bool) -> None:
+def _calibration(place: str, settings: list[str], *, json: bool) -> None:
     from capar.model.json_form import to_json
     from capar.views.tables import calibration_tables
     from extractors.calibration import calibrate, set_values
     from extractors.readers.bundle.capture_toml import read_capture
 
     known = set_values(calibrate(read_capture(place)), settings)
-    if as_json:
+    if json:
         typer.echo(to_json(known), nl=False)
         return
     for table in calibration_tables(known):
         console().print(table)
-
-
-def _report(place: str) -> dict[str, Any]:
-    path = Path(place)
-    bundled = path.suffix == ".toml" or not path.exists() or (path / "capture.toml").is_file()
-    if bundled:
-        return _of_capture(place)
-    return _of_file(path)
 
 
 def _of_capture(place: str) -> dict[str, Any]:
@@ -90,8 +85,8 @@ def _of_capture(place: str) -> dict[str, Any]:
     return head | as_json(surveys, near_pairs(streams))
 
 
-def _findings(capture: "Capture") -> "Iterator[Notice]":
-    """What measuring finds to be wrong: motion without a mover, falls, sizes and distances."""
+def _findings(capture: "CaptureData") -> "Iterator[Notice]":
+    """Faults that only measuring finds: motion without a mover, falls, sizes and distances."""
     from capar.model.notices import KINDS
     from capar.pipelines.observation import unmoved_notices
     from capar_rules.borders.deflicker import steady
@@ -123,14 +118,13 @@ def _of_file(path: Path) -> dict[str, Any]:
         streams[name] = Stream(recording.marker_times, points * metres, upright)
         kinds[name] = "marker"
     unit = [notice("no-unit")] if recording.unit_m is None else []
-    notices = [told.document() for told in (*recording.notices, *unit)]
     surveys = [survey(name, kinds[name], stream) for name, stream in streams.items()]
     head = {
         "name": path.name,
         "format": recording.format,
         "frames": len(recording.times),
         "recorded_at": recording.source.recorded_at,
-        "notices": notices,
+        "notices": [told.document() for told in (*recording.notices, *unit)],
         "sources": [{"path": recording.source.path, "format": recording.format}],
     }
     return head | as_json(surveys, near_pairs(streams))
@@ -176,33 +170,29 @@ def new_capture(
         list[Path] | None, typer.Argument(help="Motion files of one trial.", show_default=False)
     ] = None,
     output: Annotated[
-        Path, typer.Option("-o", "--output", help="The capture.toml to write, or its folder.")
+        Path, typer.Option("--output", "-o", help="The capture.toml to write, or its folder.")
     ] = Path("capture.toml"),
     force: Annotated[bool, typer.Option("--force", help="Overwrite what is there.")] = False,
     schema: Annotated[
         bool, typer.Option("--schema", help="Print the JSON schema of capture.toml, for editors.")
     ] = False,
 ) -> None:
-    """Write a commented capture.toml that a person then edits; it is read back at once."""
-    if schema:
-        from extractors.readers.schema.reference import json_schema
+    """Write a commented capture.toml for motion files, to be edited.
 
-        typer.echo(json.dumps(json_schema(), indent=2))
-        return
-    from capar.model.errors import CaparError
-
-    if not files:
-        raise CaparError("no motion file is named; like capar new-capture recording.c3d")
-    _write_draft(files, output, force=force)
-
-
-def _write_draft(files: list[Path], output: Path, *, force: bool) -> None:
-    from capar.cli.output import written
+    It is read back at once, and the lines that need a look are listed.
+    """
     from capar.model.errors import CaparError, FileError
     from extractors.readers.bundle.capture_toml import read_capture
     from extractors.readers.drafting.draft import EDIT, draft
     from extractors.readers.registry import read_recording
 
+    if schema:
+        from extractors.readers.schema.reference import json_schema
+
+        print_json(json_schema())
+        return
+    if not files:
+        raise CaparError("no motion file is named; like capar new-capture recording.c3d")
     folder = output.is_dir() or output.suffix != ".toml"
     path = output / "capture.toml" if folder else output
     if path.exists() and not force:
@@ -228,10 +218,7 @@ def _write_draft(files: list[Path], output: Path, *, force: bool) -> None:
 
 
 def view(
-    capture: Annotated[
-        str,
-        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
-    ],
+    capture: Capture,
     html: Annotated[
         Path | None,
         typer.Option(help="Write one HTML file that opens in a browser without a network."),
@@ -240,25 +227,20 @@ def view(
     at: Annotated[
         float | None, typer.Option(help="Which moment [s]; the middle if not given.")
     ] = None,
-    profile: Annotated[
-        str, typer.Option(help="The rules that name what the timeline shows: extended or thesis.")
-    ] = "extended",
+    profile: ProfileName = "extended",
     rules: Rules = None,
     fit: Annotated[
-        bool,
-        typer.Option("--fit", help="Fit a human body to the recording and show it too."),
+        bool, typer.Option("--fit", help="Fit a human body to the recording and show it too.")
     ] = False,
     only_bodies: Annotated[
-        bool,
-        typer.Option("--only-bodies", help="Show what the recording holds, without observing it."),
+        bool, typer.Option("--only-bodies", help="Show the recording without observing it.")
     ] = False,
 ) -> None:
-    """Show the bodies of CAPTURE as they moved, over what was found in them.
+    """Show the bodies of a capture in three dimensions.
 
     Use it before anything else on a capture.toml of your own: wrong units, axes and mounts are
-    seen at once.
+    seen at once. Under the bodies a timeline shows what was observed.
     """
-    from capar.cli.output import written
     from capar.model.errors import CaparError
     from capar.views.viewer.stage import stage
     from extractors.readers.bundle.capture_toml import read_capture
@@ -292,13 +274,8 @@ def view(
 
 
 def facts(
-    capture: Annotated[
-        str,
-        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
-    ],
-    profile: Annotated[
-        str, typer.Option(help="For which rules to number the borders.")
-    ] = "extended",
+    capture: Capture,
+    profile: ProfileName = "extended",
     ranked: Annotated[
         bool,
         typer.Option(help="Number the borders too, so that the rule files can read the program."),
@@ -315,7 +292,10 @@ def facts(
     actionary: Beside = None,
     steady: Steady = None,
 ) -> None:
-    """Print the ground facts of CAPTURE as an ASP program, for clingo with the rule files."""
+    """Print the measured facts of a capture as an ASP program.
+
+    clingo reads it together with the rule files that it names.
+    """
     from capar.model.facts import program
     from capar.pipelines.observation import facts_program
     from capar_rules.engine.solver import rule_file, solve, text_of
@@ -331,9 +311,8 @@ def facts(
         )
         typer.echo(f"% Rules: {' '.join(map(str, base.files))}")
     if derive:
-        answer = solve(
-            (*base.files, rule_file("explain/derived.lp")), (*measurements.facts, *borders)
-        )
+        files = (*base.files, rule_file("explain/derived.lp"))
+        answer = solve(files, (*measurements.facts, *borders))
         lines = "".join(
             f"{text_of((name, *arguments))}.\n"
             for name in ("contact", "moved", "regrasps")

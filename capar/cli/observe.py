@@ -1,6 +1,7 @@
-"""The command that people run most: a capture in; segments, a complex PAR and a picture out."""
+"""Observe a capture or a live tracker: segments, the complex PAR that they make, a picture."""
 
-import json
+import json as codec
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -12,23 +13,20 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from capar.cli.options import (
-    Device,
-    LeadIn,
-    Live,
-    Markers,
+    Json,
     New,
-    Rig,
+    Plot,
+    ProfileName,
     Rules,
     Set,
-    Speed,
     Steady,
-    StoredCalibration,
     Wait,
-    Websocket,
+    can_ask,
     confirm_new,
     rule_base,
 )
-from capar.model.errors import CaparError, FileError
+from capar.cli.output import check_writable, written
+from capar.model.errors import CaparError, FileError, RuleError
 
 if TYPE_CHECKING:
     from capar.model.calibration import Calibration
@@ -40,15 +38,337 @@ if TYPE_CHECKING:
     from capar_rules.engine.profiles import Profile
     from extractors.measure import Measurements
 
-
-COLUMNS = "   time  status       segment          from-to [s]     what was done"
+LIVE_COLUMNS = "   time  status       segment          from-to [s]     what was done"
 WAIT_S = 0.02
 """Pause while no frame is due [s]."""
 
 
+class OnUnknown(StrEnum):
+    """What to do about segments that no rule names."""
+
+    ASK = "ask"
+    KEEP = "keep"
+    FAIL = "fail"
+
+
+def observe(
+    capture: Annotated[
+        str,
+        typer.Argument(
+            help="A capture's folder or capture.toml; FOLDER:TAKE for one of its takes. "
+            "Not with --device.",
+            show_default=False,
+        ),
+    ] = "",
+    profile: ProfileName = "extended",
+    name: Annotated[str, typer.Option(help="What the whole action is called.")] = "",
+    on_unknown: Annotated[
+        OnUnknown | None,
+        typer.Option(
+            help="For a segment that no rule names: ask for a name (the default at a terminal), "
+            "keep it as Unknown (the default elsewhere), or fail."
+        ),
+    ] = None,
+    rules: Rules = None,
+    steady: Steady = None,
+    set_: Set = None,
+    json: Json = False,
+    script: Annotated[
+        bool, typer.Option("--script", help="Print the complex PAR as the thesis's Python script.")
+    ] = False,
+    pars: Annotated[
+        bool, typer.Option("--pars", help="Print every UPAR and IPAR as well, as text to diff.")
+    ] = False,
+    plot: Plot = None,
+    actionary: Annotated[
+        str | None,
+        typer.Option(
+            metavar="PATH|URL",
+            envvar="CAPAR_ACTIONARY",
+            help="Keep the observation in this Actionary: a folder or a SPARQL server. "
+            "Rules in that folder count too.",
+            show_default=False,
+        ),
+    ] = None,
+    fit: Annotated[
+        bool,
+        typer.Option(
+            "--fit",
+            help="Fit a human body first: its head and feet can be touched, and hands without a "
+            "shape get its surface.",
+        ),
+    ] = False,
+    wait: Wait = 0.0,
+    new: New = False,
+    live: Annotated[
+        bool,
+        typer.Option(
+            "--live",
+            help="Print segments while they happen: of CAPTURE, replayed, or of --device.",
+        ),
+    ] = False,
+    device: Annotated[
+        str,
+        typer.Option(
+            help="With --live: a tracker's address; `capar devices` lists examples.",
+            show_default=False,
+        ),
+    ] = "",
+    rig: Annotated[
+        str,
+        typer.Option(
+            help="With --device: a capture of the same bodies, such as an earlier take.",
+            show_default=False,
+        ),
+    ] = "",
+    calibration: Annotated[
+        Path | None,
+        typer.Option(
+            help="With --live: what `capar inspect CAPTURE --calibration --json` printed.",
+            show_default=False,
+        ),
+    ] = None,
+    lead_in: Annotated[
+        float,
+        typer.Option(
+            min=0.0,
+            metavar="SECONDS",
+            help="With --live: calibrate by so many first seconds; 0 by the whole CAPTURE.",
+        ),
+    ] = 0.0,
+    speed: Annotated[
+        float,
+        typer.Option(
+            min=0.0,
+            help="With --live CAPTURE: how many times as fast to replay it; 0 as fast as it goes.",
+        ),
+    ] = 1.0,
+    websocket: Annotated[
+        int | None,
+        typer.Option(
+            metavar="PORT",
+            min=0,
+            max=65535,
+            help="With --live: also send events as JSON to programs that connect to "
+            "ws://127.0.0.1:PORT; 0 takes a free port and says which. Needs capar[live].",
+            show_default=False,
+        ),
+    ] = None,
+    lsl_markers: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            help="With --live: also send events as JSON in a Lab Streaming Layer stream of that "
+            "name and of type Markers. Needs capar[live].",
+            show_default=False,
+        ),
+    ] = "",
+) -> None:
+    """Say what was done in a capture: named segments and their PAR.
+
+    Segments are those of each hand, foot or head; the complex PAR is what they make together.
+    With --live a segment is printed when it ends, provisional first and then settled; Ctrl-C ends
+    it. Other programs get the same events with --json, --websocket or --lsl-markers.
+    """
+    forms = {"--json": json, "--script": script, "--pars": pars}
+    named = [form for form, given in forms.items() if given]
+    if len(named) > 1:
+        raise CaparError(f"{' and '.join(named)} print different things; say one of them")
+    if plot:
+        from capar.views.picture import SUFFIXES
+
+        check_writable(plot, suffixes=SUFFIXES)
+    if actionary and Path(actionary).is_file():
+        raise FileError(actionary, "is a file; an Actionary is a folder.", "Name a folder.")
+    if actionary:
+        confirm_new(actionary, new=new)
+    if live or device:
+        if plot or set_ or on_unknown or fit:
+            raise CaparError(
+                "--plot, --set, --fit and --on-unknown are not for --live; use its recording"
+            )
+        source = _Live(
+            capture, device, rig, calibration, lead_in, speed, json, name, websocket, lsl_markers
+        )
+        seen = _observe_live(source, rule_base(profile, rules, actionary, steady=steady))
+        stored = _store(seen, actionary, name=name, wait_s=wait) if actionary else ""
+        if not json:
+            typer.echo()
+            _print(seen, json=False, script=script, pars=pars)
+        if stored:
+            typer.echo(stored, err=True)
+        return
+    if websocket is not None or lsl_markers:
+        raise CaparError("--websocket and --lsl-markers send events of --live; give --live as well")
+    if not capture:
+        raise CaparError("expected a CAPTURE, or --live with --device ADDRESS")
+    from extractors.readers.bundle.capture_toml import read_capture
+
+    base = rule_base(profile, rules, actionary, steady=steady)
+    trial = read_capture(capture)
+    if fit:
+        from capar.body.body_fitting import fit_body, with_body_parts
+
+        trial = with_body_parts(trial, fit_body(capture, trial))
+
+    # A mistake in the capture is reported before these are loaded, which takes longer.
+    from capar.pipelines.observation import observe_measured
+    from capar_rules.authoring.user_rules import new_rules_folder
+    from extractors.calibration import calibrate, set_values
+    from extractors.measure import measure
+
+    measurements = measure(trial, set_values(calibrate(trial), set_) if set_ else None)
+    observation = observe_measured(trial, measurements, rules=base, name=name)
+    choice = on_unknown or (OnUnknown.ASK if can_ask() and not json else OnUnknown.KEEP)
+    folder = new_rules_folder(rules, actionary=actionary)
+    if choice is OnUnknown.ASK and _ask_for_names(observation, folder):
+        base = rule_base(profile, rules, actionary, steady=steady)
+        observation = observe_measured(trial, measurements, rules=base, name=name)
+    if choice is OnUnknown.FAIL:
+        _fail_on_unknown(observation)
+    # Files first: a reader of the output who stops early, as `head` does, ends the command.
+    done = []
+    if plot:
+        done.append(_draw(observation, trial, measurements, plot))
+    if actionary:
+        done.append(_store(observation, actionary, name=name, wait_s=wait))
+    _print(observation, json=json, script=script, pars=pars)
+    for line in done:
+        typer.echo(line, err=True)
+
+
+def demo(
+    plot: Annotated[
+        Path, typer.Option(help="Where to draw the picture: a .png, .svg or .pdf file.")
+    ] = Path("drink_from_mug.png"),
+) -> None:
+    """Observe the shipped capture of drinking from a mug, and draw it."""
+    from importlib import resources
+
+    with resources.as_file(resources.files("capar") / "demo" / "drink_from_mug") as bundle:
+        observe(str(bundle), name="DrinkFromMug", plot=plot)
+
+
+def _store(observation: "Observation", place: str, *, name: str, wait_s: float) -> str:
+    """Add an observation to an Actionary; what became of it, to be printed."""
+    from kb import Actionary
+    from kb.corrections import claims
+
+    with Actionary.open(place, wait_s=wait_s) as store:
+        known = store.recognise(observation.complex_par)
+        added = store.add(observation, name=name or known or None)
+        said = claims(store.store, observation.capture)
+    what = "seen before" if known else "seen for the first time"
+    again = ", in place of the earlier observation of this capture" if added.replaced else ""
+    kept = f"kept {added.name} in {place}: {added.action}, {what}{again}"
+    if not said:
+        return kept
+    who = ", ".join(dict.fromkeys(claim.by for claim in said))
+    return (
+        f"{kept}\n{who} corrected some of these segments (`capar correct {observation.capture}`); "
+        "with --corrected, questions and reports use that"
+    )
+
+
+def _print(observation: "Observation", *, json: bool, script: bool, pars: bool) -> None:
+    from capar.views.tables import par_text
+
+    if json:
+        from capar.model.json_form import to_json
+
+        typer.echo(to_json(observation), nl=False)
+        return
+    if script:
+        from capar.views.script import script as written_script
+
+        typer.echo(written_script(observation), nl=False)
+        return
+    _tables(observation)
+    if pars:
+        for par in (observation.complex_par, *observation.upars, *observation.ipars):
+            typer.echo()
+            typer.echo(par_text(par), nl=False)
+
+
+def _tables(observation: "Observation") -> None:
+    """Tables for a terminal; plain aligned columns for anything else."""
+    from capar.views.notices import note_lines
+    from capar.views.tables import (
+        aligned,
+        force_lines,
+        joint_lines,
+        segment_rows,
+        segments_table,
+        step_rows,
+        steps_table,
+        unknown_note,
+    )
+
+    if sys.stdout.isatty():
+        from rich.console import Console
+
+        console = Console()
+        console.print(segments_table(observation))
+        console.print(steps_table(observation.complex_par))
+    else:
+        for rows in (segment_rows(observation), step_rows(observation.complex_par)):
+            typer.echo("\n".join(aligned(rows)) + "\n")
+    unknown = (unknown_note(each) for each in observation.segments if not each.known)
+    for line in (*joint_lines(observation), *force_lines(observation), *unknown):
+        typer.echo(line)
+    for line in note_lines(observation.notices):
+        typer.echo(line, err=True)
+
+
+def _draw(
+    observation: "Observation", capture: "Capture", measurements: "Measurements", path: Path
+) -> str:
+    from capar.views.picture import draw
+
+    speeds = {
+        link.ee: (capture.times, measurements.tracks[link.ee].speed_mps)
+        for link in observation.links
+    }
+    lost = {name: each.lost for name, each in measurements.bodies.poses.items()}
+    with written(path) as draft:
+        draw(observation, speeds, path=draft, lost=lost)
+    return f"drew {path}"
+
+
+def _fail_on_unknown(observation: "Observation") -> None:
+    from capar.views.tables import unknown_note
+
+    unknown = [unknown_note(each) for each in observation.segments if not each.known]
+    if unknown:
+        raise RuleError("no rule names every segment:\n  " + "\n  ".join(unknown))
+
+
+def _ask_for_names(observation: "Observation", folder: Path) -> bool:
+    """Ask for a name for each unknown feature set; whether any was given."""
+    from capar.model.par import ACTION_NAME
+    from capar.views.tables import unknown_note
+    from capar_rules.authoring.user_rules import teach
+
+    unknown = {each.features: each for each in observation.segments if not each.known}
+    names = []
+    question = "What is it called? (empty keeps it unknown)"
+    for features, segment in unknown.items():
+        typer.echo(unknown_note(segment), err=True)
+        while True:
+            answer = typer.prompt(question, default="", show_default=False, err=True).strip()
+            if not answer or ACTION_NAME.fullmatch(answer):
+                break
+            typer.echo("A name reads like MoveObjTo: letters and digits, capital first.", err=True)
+        if answer:
+            names.append((answer, features))
+    for path in teach(names, folder=folder):
+        typer.echo(f"wrote {path}", err=True)
+    return bool(names)
+
+
 @dataclass(frozen=True, slots=True)
-class LiveOptions:
-    """What the command line says of live observation."""
+class _Live:
+    """What the options say of live observation."""
 
     source: str
     """The capture that is replayed; empty with a device."""
@@ -58,15 +378,12 @@ class LiveOptions:
     calibration: Path | None
     lead_in_s: float
     speed: float
-    """How many times as fast as it was recorded a capture is replayed; 0: as fast as it goes."""
+    """How many times as fast as recorded a capture is replayed; 0: as fast as it goes."""
 
     json: bool
-    name: str = ""
-    websocket: int | None = None
-    """The port at which programs are sent events; 0 any that is free, None no port."""
-
-    markers: str = ""
-    """The name of a Lab Streaming Layer stream of events; empty for none."""
+    name: str
+    websocket: int | None
+    markers: str
 
     def __post_init__(self) -> None:
         """Check that there is one source.
@@ -85,19 +402,15 @@ class LiveOptions:
             raise CaparError("--device needs --calibration FILE, or --lead-in SECONDS above 0")
 
 
-def observe_live(options: LiveOptions, rules: "Profile") -> "Observation":
+def _observe_live(options: _Live, rules: "Profile") -> "Observation":
     """Observe until the source ends or the user interrupts."""
-    if options.device:
-        return _from_device(options, rules)
-    return _from_capture(options, rules)
-
-
-def _from_capture(options: LiveOptions, rules: "Profile") -> "Observation":
     from capar.pipelines.live.frames import lead_in, replayed
     from capar.pipelines.live.observer import LiveObserver
     from extractors.calibration import calibrate
     from extractors.readers.bundle.capture_toml import read_capture
 
+    if options.device:
+        return _observe_device(options, rules)
     trial = read_capture(options.source)
     known = _stored(options.calibration)
     if known is None:
@@ -106,7 +419,7 @@ def _from_capture(options: LiveOptions, rules: "Profile") -> "Observation":
     return _run(observer, _paced(replayed(trial), options.speed), options)
 
 
-def _from_device(options: LiveOptions, rules: "Profile") -> "Observation":
+def _observe_device(options: _Live, rules: "Profile") -> "Observation":
     from capar.pipelines.live.frames import DeviceFrames, body_names, capture_of
     from capar.pipelines.live.observer import LiveObserver
     from extractors.calibration import calibrate
@@ -117,11 +430,11 @@ def _from_device(options: LiveOptions, rules: "Profile") -> "Observation":
     rig = read_capture(options.rig)
     rig = replace(rig, name=options.name or "live", sources=(), notices=())
     known = _stored(options.calibration)
-    names = body_names(rig)
     with find_tracker(options.device) as tracker:
         told = tracker.describe()
-        step_s = known.step_s if known else _step_s(told.rate_hz, time_step(rig.times))
-        frames = DeviceFrames(rig, names, told, step_s)
+        own_s = 1.0 / told.rate_hz if told.rate_hz > 0.0 else time_step(rig.times)
+        step_s = known.step_s if known else own_s
+        frames = DeviceFrames(rig, body_names(rig), told, step_s)
 
         def batches() -> "Iterator[list[Poses]]":
             heard = 0
@@ -139,19 +452,9 @@ def _from_device(options: LiveOptions, rules: "Profile") -> "Observation":
                 first += next(source)
             known = calibrate(capture_of(rig, first))
         observer = LiveObserver(rig, known, rules=rules, name=options.name, sentences=True)
-        seen = _run(observer, _following(first, source), options)
+        seen = _run(observer, (batch for some in ([first], source) for batch in some), options)
         typer.echo(f"{observer.frames} frames, {frames.filled} of them lost on the way", err=True)
     return seen
-
-
-def _following(first: "list[Poses]", more: "Iterator[list[Poses]]") -> "Iterator[list[Poses]]":
-    yield first
-    yield from more
-
-
-def _step_s(rate_hz: float, usual_s: float) -> float:
-    """The step of a tracker that says its rate, or else that of the rig's recording [s]."""
-    return 1.0 / rate_hz if rate_hz > 0.0 else usual_s
 
 
 def _stored(path: Path | None) -> "Calibration | None":
@@ -188,32 +491,32 @@ def _paced(frames: "list[Poses]", speed: float) -> "Iterator[list[Poses]]":
 
 
 def _run(
-    observer: "LiveObserver", batches: "Iterator[list[Poses]]", options: LiveOptions
+    observer: "LiveObserver", batches: "Iterator[list[Poses]]", options: _Live
 ) -> "Observation":
-    """Tell events until the source ends or Ctrl-C; then settle what is left."""
+    """Print events until the source ends or Ctrl-C; then settle what is left."""
     from capar.model.json_form import to_json
 
     with ExitStack() as opened:
         sends = list(_programs(options, opened))
         if not options.json:
-            typer.echo(COLUMNS)
+            typer.echo(LIVE_COLUMNS)
         try:
             for batch in batches:
-                _tell(observer.push(batch), options, sends)
+                _print_events(observer.push(batch), options, sends)
         except KeyboardInterrupt:
             typer.echo("ended", err=True)
         if observer.frames < 2:
             raise CaparError("no frames came: nothing was observed")
         events, seen = observer.finish()
-        _tell(events, options, sends)
+        _print_events(events, options, sends)
     assert seen is not None
     if options.json:
-        whole = {"event": "observation", "observation": json.loads(to_json(seen))}
-        typer.echo(json.dumps(whole, ensure_ascii=False))
+        whole = {"event": "observation", "observation": codec.loads(to_json(seen))}
+        typer.echo(codec.dumps(whole, ensure_ascii=False))
     return seen
 
 
-def _programs(options: LiveOptions, opened: ExitStack) -> Iterator[Callable[[str], None]]:
+def _programs(options: _Live, opened: ExitStack) -> Iterator[Callable[[str], None]]:
     """What sends an event to other programs, each closed with the stack."""
     if options.websocket is not None:
         from capar.pipelines.live.event_socket import EventSocket
@@ -231,13 +534,13 @@ def _programs(options: LiveOptions, opened: ExitStack) -> Iterator[Callable[[str
         yield markers.send
 
 
-def _tell(
-    events: "list[SegmentEvent]", options: LiveOptions, sends: list[Callable[[str], None]]
+def _print_events(
+    events: "list[SegmentEvent]", options: _Live, sends: list[Callable[[str], None]]
 ) -> None:
     from capar.pipelines.live.ledgers import event_row
 
     for event in events:
-        line = json.dumps(event_row(event), ensure_ascii=False)
+        line = codec.dumps(event_row(event), ensure_ascii=False)
         typer.echo(line if options.json else _line(event))
         for send in sends:
             send(line)
@@ -252,307 +555,3 @@ def _line(event: "SegmentEvent") -> str:
         f"{event.time_s:7.2f}  {event.status.value:12} {segment.ee}/{segment.index}".ljust(38)
         + f"{segment.start_s:6.2f}-{segment.end_s:<6.2f}   {what}"
     )
-
-
-class OnUnknown(StrEnum):
-    """What to do about segments that no rule names."""
-
-    ASK = "ask"
-    KEEP = "keep"
-    FAIL = "fail"
-
-
-def observe(
-    capture: Annotated[
-        str,
-        typer.Argument(
-            help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take. "
-            "Not with --device.",
-            show_default=False,
-        ),
-    ] = "",
-    profile: Annotated[
-        str, typer.Option(help="The rules to reason with: extended, or thesis to the letter.")
-    ] = "extended",
-    name: Annotated[str, typer.Option(help="What the whole action is called.")] = "",
-    on_unknown: Annotated[
-        OnUnknown | None,
-        typer.Option(
-            help="For a segment that no rule names: ask for a name (the default at a terminal), "
-            "keep it as Unknown (the default elsewhere), or fail."
-        ),
-    ] = None,
-    rules: Rules = None,
-    steady: Steady = None,
-    set_: Set = None,
-    json: Annotated[bool, typer.Option("--json", help="Print the observation as JSON.")] = False,
-    script: Annotated[
-        bool, typer.Option("--script", help="Print the complex PAR as the thesis's Python script.")
-    ] = False,
-    pars: Annotated[
-        bool, typer.Option("--pars", help="Print every UPAR and IPAR as well, as text to diff.")
-    ] = False,
-    plot: Annotated[
-        Path | None, typer.Option(help="Draw the observation to a .png, .svg or .pdf file.")
-    ] = None,
-    actionary: Annotated[
-        str | None,
-        typer.Option(
-            metavar="PATH|URL",
-            envvar="CAPAR_ACTIONARY",
-            help="Keep the observation in this Actionary: a folder, or a SPARQL server's address. "
-            "Rules in that folder count too.",
-            show_default=False,
-        ),
-    ] = None,
-    fit: Annotated[
-        bool,
-        typer.Option(
-            "--fit",
-            help="Fit a human body first: its head and feet can be touched, and hands without a "
-            "shape have its surface.",
-        ),
-    ] = False,
-    wait: Wait = 0.0,
-    new: New = False,
-    live: Live = False,
-    device: Device = "",
-    rig: Rig = "",
-    calibration: StoredCalibration = None,
-    lead_in: LeadIn = 0.0,
-    speed: Speed = 1.0,
-    websocket: Websocket = None,
-    lsl_markers: Markers = "",
-) -> None:
-    """Say what was done in CAPTURE: segments of each link, and the complex PAR they make.
-
-    With --live it is told while it happens, provisional when a segment ends and then settled;
-    Ctrl-C ends it. Other programs get the same events with --json, --websocket or --lsl-markers.
-    """
-    import sys
-
-    _check_output(json=json, script=script, pars=pars, plot=plot)
-    if actionary and Path(actionary).is_file():
-        raise FileError(actionary, "is a file; an Actionary is a folder.", "Name a folder.")
-    if actionary:
-        confirm_new(actionary, new=new)
-    if live or device:
-        if plot or set_ or on_unknown or fit:
-            raise CaparError(
-                "--plot, --set, --fit and --on-unknown are not for --live; use its recording"
-            )
-        options = LiveOptions(
-            capture,
-            device,
-            rig,
-            calibration,
-            lead_in,
-            speed,
-            json=json,
-            name=name,
-            websocket=websocket,
-            markers=lsl_markers,
-        )
-        seen = observe_live(options, rule_base(profile, rules, actionary, steady=steady))
-        stored = _store(seen, actionary, name=name, wait_s=wait) if actionary else ""
-        if not json:
-            typer.echo()
-            _print(seen, json=False, script=script, pars=pars)
-        if stored:
-            typer.echo(stored, err=True)
-        return
-    _check_offline(capture, sends=websocket is not None or bool(lsl_markers))
-    from extractors.readers.bundle.capture_toml import read_capture
-
-    base = rule_base(profile, rules, actionary, steady=steady)
-    trial = read_capture(capture)
-    if fit:
-        from capar.body.body_fitting import fit_body, with_body_parts
-
-        trial = with_body_parts(trial, fit_body(capture, trial))
-
-    # A mistake in the capture is reported before these are loaded, which takes longer.
-    from capar.pipelines.observation import observe_measured
-    from capar_rules.authoring.user_rules import new_rules_folder
-    from extractors.calibration import calibrate, set_values
-    from extractors.measure import measure
-
-    measurements = measure(trial, set_values(calibrate(trial), set_) if set_ else None)
-    observation = observe_measured(trial, measurements, rules=base, name=name)
-    terminal = sys.stdin.isatty() and sys.stderr.isatty()
-    choice = on_unknown or (OnUnknown.ASK if terminal and not json else OnUnknown.KEEP)
-    folder = new_rules_folder(rules, actionary=actionary)
-    if choice is OnUnknown.ASK and _ask_for_names(observation, folder):
-        base = rule_base(profile, rules, actionary, steady=steady)
-        observation = observe_measured(trial, measurements, rules=base, name=name)
-    if choice is OnUnknown.FAIL:
-        _fail_on_unknown(observation)
-    # Files first: a reader of the output who stops early, as `head` does, ends the command.
-    done = []
-    if plot:
-        done.append(_draw(observation, trial, measurements, plot))
-    if actionary:
-        done.append(_store(observation, actionary, name=name, wait_s=wait))
-    _print(observation, json=json, script=script, pars=pars)
-    for line in done:
-        typer.echo(line, err=True)
-
-
-def _check_output(*, json: bool, script: bool, pars: bool, plot: Path | None) -> None:
-    """Check that the requested output can be written, before anything is computed."""
-    from capar.cli.output import check_writable
-
-    forms = {"--json": json, "--script": script, "--pars": pars}
-    named = [name for name, given in forms.items() if given]
-    if len(named) > 1:
-        raise CaparError(f"{' and '.join(named)} print different things; say one of them")
-    if plot:
-        from capar.views.picture import SUFFIXES
-
-        check_writable(plot, suffixes=SUFFIXES)
-
-
-def _check_offline(capture: str, *, sends: bool) -> None:
-    """Check that there is a capture, and nothing is asked for that only live observation does."""
-    if sends:
-        raise CaparError("--websocket and --lsl-markers send events of --live; give --live as well")
-    if not capture:
-        raise CaparError("expected a CAPTURE, or --live with --device ADDRESS")
-
-
-def _store(observation: "Observation", place: str, *, name: str, wait_s: float) -> str:
-    from kb import Actionary
-    from kb.corrections import claims
-
-    with Actionary.open(place, wait_s=wait_s) as store:
-        known = store.recognise(observation.complex_par)
-        added = store.add(observation, name=name or known or None)
-        said = claims(store.store, observation.capture)
-    what = "seen before" if known else "seen for the first time"
-    again = ", in place of the earlier observation of this capture" if added.replaced else ""
-    kept = f"kept {added.name} in {place}: {added.action}, {what}{again}"
-    if not said:
-        return kept
-    who = ", ".join(dict.fromkeys(claim.by for claim in said))
-    return (
-        f"{kept}\n{who} corrected some of these segments (`capar correct {observation.capture}`); "
-        "--corrected has questions and reports say so"
-    )
-
-
-def _print(observation: "Observation", *, json: bool, script: bool, pars: bool) -> None:
-    if json:
-        from capar.model.json_form import to_json
-
-        typer.echo(to_json(observation), nl=False)
-        return
-    if script:
-        from capar.views.script import script as written
-
-        typer.echo(written(observation), nl=False)
-        return
-    _tables(observation)
-    if pars:
-        from capar.views.tables import par_text
-
-        for par in (observation.complex_par, *observation.upars, *observation.ipars):
-            typer.echo()
-            typer.echo(par_text(par), nl=False)
-
-
-def _tables(observation: "Observation") -> None:
-    """Tables for a terminal; plain aligned columns for anything else."""
-    import sys
-
-    from capar.views.notices import note_lines
-    from capar.views.tables import (
-        aligned,
-        force_lines,
-        joint_lines,
-        segment_rows,
-        segments_table,
-        step_rows,
-        steps_table,
-        unknown_note,
-    )
-
-    if sys.stdout.isatty():
-        from rich.console import Console
-
-        console = Console()
-        console.print(segments_table(observation))
-        console.print(steps_table(observation.complex_par))
-    else:
-        for rows in (segment_rows(observation), step_rows(observation.complex_par)):
-            typer.echo("\n".join(aligned(rows)) + "\n")
-    for line in (*joint_lines(observation), *force_lines(observation)):
-        typer.echo(line)
-    for segment in observation.segments:
-        if not segment.known:
-            typer.echo(unknown_note(segment))
-    for line in note_lines(observation.notices):
-        typer.echo(line, err=True)
-
-
-def _draw(
-    observation: "Observation", capture: "Capture", measurements: "Measurements", path: Path
-) -> str:
-    from capar.cli.output import written
-    from capar.views.picture import draw
-
-    speeds = {
-        link.ee: (capture.times, measurements.tracks[link.ee].speed_mps)
-        for link in observation.links
-    }
-    lost = {name: each.lost for name, each in measurements.bodies.poses.items()}
-    with written(path) as draft:
-        draw(observation, speeds, path=draft, lost=lost)
-    return f"drew {path}"
-
-
-def _fail_on_unknown(observation: "Observation") -> None:
-    from capar.model.errors import RuleError
-    from capar.views.tables import unknown_note
-
-    unknown = [unknown_note(each) for each in observation.segments if not each.known]
-    if unknown:
-        raise RuleError("no rule names every segment:\n  " + "\n  ".join(unknown))
-
-
-def _ask_for_names(observation: "Observation", folder: Path) -> bool:
-    """Ask for a name for each unknown feature set; whether any was given."""
-    from capar.model.par import ACTION_NAME
-    from capar.views.tables import unknown_note
-    from capar_rules.authoring.user_rules import teach
-
-    unknown = {each.features: each for each in observation.segments if not each.known}
-    names = []
-    for features, segment in unknown.items():
-        typer.echo(unknown_note(segment), err=True)
-        while True:
-            answer = typer.prompt(
-                "What is it called? (empty keeps it unknown)",
-                default="",
-                show_default=False,
-                err=True,
-            ).strip()
-            if not answer or ACTION_NAME.fullmatch(answer):
-                break
-            typer.echo("A name reads like MoveObjTo: letters and digits, capital first.", err=True)
-        if answer:
-            names.append((answer, features))
-    for path in teach(names, folder=folder):
-        typer.echo(f"wrote {path}", err=True)
-    return bool(names)
-
-
-def demo(
-    plot: Annotated[
-        Path, typer.Option(help="Where to draw the picture: a .png, .svg or .pdf file.")
-    ] = Path("drink_from_mug.png"),
-) -> None:
-    """Observe the shipped capture of somebody who drinks from a mug, and draw it."""
-    from importlib import resources
-
-    with resources.as_file(resources.files("capar") / "demo" / "drink_from_mug") as bundle:
-        observe(str(bundle), name="DrinkFromMug", plot=plot)

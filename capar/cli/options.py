@@ -13,54 +13,33 @@ if TYPE_CHECKING:
     from kb.lexicon.links import PrimitiveWords
     from kb.store.stores import Store
 
-
-Place = Annotated[
-    str | None,
-    typer.Option(
-        "--actionary",
-        metavar="PATH|URL",
-        help="The Actionary: a folder, or a SPARQL server's address. "
-        "Else CAPAR_ACTIONARY, else ./actionary.",
-        show_default=False,
-    ),
+Capture = Annotated[
+    str,
+    typer.Argument(help="A capture's folder or capture.toml; FOLDER:TAKE for one of its takes."),
 ]
-
-Wait = Annotated[
-    float, typer.Option(metavar="SECONDS", help="How long to wait for another writer.")
+Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+ProfileName = Annotated[
+    str, typer.Option("--profile", help="The rules: extended, or thesis to the letter.")
 ]
-
-New = Annotated[
-    bool, typer.Option("--new", help="Make the Actionary if it is not there, without asking.")
-]
-
 Rules = Annotated[
     Path | None,
     typer.Option(
         "--rules",
         metavar="FOLDER",
-        help="Folder of your project's rule files; else CAPAR_RULES, else ./rules. "
+        help="Your project's rule files; else CAPAR_RULES, else ./rules. "
         "Rules in the Actionary's own folder count too.",
         show_default=False,
     ),
 ]
-
-Assume = Annotated[
-    Path | None,
+Place = Annotated[
+    str | None,
     typer.Option(
-        metavar="FILE",
-        help="A TOML file with what the recording does not say: from_s, to_s; [performer] "
-        "kind, stature_m, place, heading_deg, floor_m; [mirrored] left_hand = 'OBJECT'; "
-        "[hand.SIDE] fingers, palm = [X, Y, Z]; "
-        "[assumed_size] OBJECT = [X, Y].",
+        "--actionary",
+        metavar="PATH|URL",
+        help="The Actionary: a folder or a SPARQL server. Else CAPAR_ACTIONARY, else ./actionary.",
         show_default=False,
     ),
 ]
-
-NewBundle = Annotated[
-    Path | None,
-    typer.Option("--output", "-o", help="A new folder for the capture bundle.", show_default=False),
-]
-
 Beside = Annotated[
     str | None,
     typer.Option(
@@ -72,23 +51,54 @@ Beside = Annotated[
 ]
 """The Actionary of a command that opens none and only takes its rules."""
 
+Wait = Annotated[
+    float, typer.Option(metavar="SECONDS", help="How long to wait for another writer.")
+]
+New = Annotated[
+    bool, typer.Option("--new", help="Make the Actionary if it is not there, without asking.")
+]
+Corrected = Annotated[
+    bool,
+    typer.Option("--corrected", help="Use what persons say of segments (`capar correct`)."),
+]
+Steady = Annotated[
+    bool | None,
+    typer.Option(
+        "--steady/--no-steady",
+        help="Smooth flicker of contacts and motions by the fewest changes, or not; "
+        "the profile thesis does not by default.",
+        show_default=False,
+    ),
+]
 Set = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help="Take another value of the calibration for this run, in metres and seconds; "
-        "touch_m:right_hand,bowl=0.12 is a distance at which two bodies touch. Can be repeated.",
+        help="Replace a value of the calibration for this run, in metres and seconds, such as "
+        "touch_m:right_hand,bowl=0.12. May be repeated.",
         show_default=False,
     ),
 ]
-
-Steady = Annotated[
-    bool | None,
+Plot = Annotated[
+    Path | None,
+    typer.Option(help="Draw it to a .png, .svg or .pdf file.", show_default=False),
+]
+NewBundle = Annotated[
+    Path | None,
+    typer.Option("--output", "-o", help="A new folder for the capture bundle.", show_default=False),
+]
+OutputFile = Annotated[
+    Path | None,
+    typer.Option("--output", "-o", "--out", help="A file, instead of standard output."),
+]
+Assume = Annotated[
+    Path | None,
     typer.Option(
-        "--steady/--no-steady",
-        help="Take contacts and motions that flicker as the fewest changes explain them, or as "
-        "they were measured; the profile thesis does not, unless told to.",
+        metavar="FILE",
+        help="A TOML file with what the recording does not say: from_s, to_s; [performer] "
+        "kind, stature_m, place, heading_deg, floor_m; [mirrored] left_hand = 'OBJECT'; "
+        "[hand.SIDE] fingers, palm = [X, Y, Z]; [assumed_size] OBJECT = [X, Y].",
         show_default=False,
     ),
 ]
@@ -101,22 +111,29 @@ def rule_base(
     *,
     steady: bool | None = None,
 ) -> "Profile":
-    """A profile with the rules that people wrote, each judged by its text before it counts.
+    """A profile with the rules that people wrote, each checked by its text first.
 
     Args:
         profile: Its name.
         rules: The project's folder that was named.
         actionary: The Actionary that the command names or opens; None for CAPAR_ACTIONARY's.
-        steady: Whether to resolve flicker; None for what is usual in the profile.
+        steady: Whether to resolve flicker; None for the profile's default.
 
     Raises:
-        CaparError: A folder is none, or a rule file has a fault.
+        CaparError: A folder is missing, or a rule file has a fault.
     """
     from capar_rules.authoring.user_rules import user_rules
     from capar_rules.lint.checking import admitted_profile
 
     added = user_rules(rules, actionary=actionary)
     return admitted_profile(profile, added=added, steady=steady)
+
+
+def rule_words(rules: Path | None, actionary: str | None = None) -> "tuple[PrimitiveWords, ...]":
+    """The words of the shipped primitives and of those that people wrote."""
+    from capar.pipelines.linguistic_report import primitive_files, primitive_words
+
+    return primitive_words(primitive_files(rule_base("extended", rules, actionary).added))
 
 
 def opened(actionary: str | None) -> str:
@@ -160,8 +177,8 @@ def require_actionary(actionary: str | None, *, observed: bool = False) -> None:
 def confirm_new(actionary: str | None, *, new: bool) -> None:
     """Ask before an Actionary is made, so that a typing mistake makes none.
 
-    Where nobody can be asked, one is made unless its name is nearly that of one beside it, or its
-    parent folder is not there.
+    Where nobody can be asked, one is made unless its name resembles one beside it, or its parent
+    folder is missing.
 
     Args:
         actionary: Its place; None for the usual one.
@@ -187,105 +204,39 @@ def confirm_new(actionary: str | None, *, new: bool) -> None:
             return
     elif folder.parent.is_dir() and not near:
         return
-    raise FileError(
-        place, "is no Actionary.",
-        f"{meant}To make a new one there{'' if folder.parent.is_dir() else ' and its folder'}, "
-        "add --new.",
-    )  # fmt: skip
+    also = "" if folder.parent.is_dir() else " and its folder"
+    raise FileError(place, "is no Actionary.", f"{meant}To make a new one there{also}, add --new.")
 
 
 def can_ask() -> bool:
-    """Whether somebody is there who can answer."""
+    """Whether somebody at a terminal can answer."""
     return sys.stdin.isatty() and sys.stderr.isatty()
 
 
-def rule_words(rules: Path | None, actionary: str | None = None) -> "tuple[PrimitiveWords, ...]":
-    """What the primitives that ship, and those that people wrote, are called."""
-    from capar.pipelines.linguistic_report import primitive_files, primitive_words
-
-    return primitive_words(primitive_files(rule_base("extended", rules, actionary).added))
-
-
 @contextmanager
-def open_words(where: str | None) -> "Iterator[Store | None]":
-    """The store of an Actionary to read; None where none is named and none stands here."""
-    from kb.store.stores import DATA_FOLDER, is_address, open_store, place
+def open_words(where: str | None, *, corrected: bool = False) -> "Iterator[Store | None]":
+    """The store of an Actionary to read; None where none is named and none stands here.
+
+    Args:
+        where: The Actionary's place; None for the usual one.
+        corrected: Whether persons' claims stand in place of what they correct.
+    """
+    from kb.store.stores import is_address, open_store, place
     from kb.store.updates import check_current
 
     target = place(where)
     # The folder of an Actionary may hold rules before it holds anything that was observed.
-    if where is None and not is_address(target) and not (Path(target) / DATA_FOLDER).is_dir():
+    if where is None and not is_address(target) and not has_actionary(target, named=None):
         yield None
         return
     store = open_store(target, read_only=not is_address(target))
     try:
         check_current(store)
-        yield store
+        if corrected:
+            from kb.corrections import corrected as corrected_copy
+
+            yield corrected_copy(store)
+        else:
+            yield store
     finally:
         store.close()
-
-
-Live = Annotated[
-    bool,
-    typer.Option(
-        "--live", help="Tell segments while they happen: of CAPTURE, replayed, or of --device."
-    ),
-]
-Device = Annotated[
-    str,
-    typer.Option(
-        help="With --live: a tracker's address; `capar devices` lists examples.",
-        show_default=False,
-    ),
-]
-Rig = Annotated[
-    str,
-    typer.Option(
-        help="With --device: a capture of the same bodies, such as an earlier take.",
-        show_default=False,
-    ),
-]
-StoredCalibration = Annotated[
-    Path | None,
-    typer.Option(
-        "--calibration",
-        help="With --live: what `capar inspect CAPTURE --calibration --json` printed.",
-        show_default=False,
-    ),
-]
-LeadIn = Annotated[
-    float,
-    typer.Option(
-        min=0.0,
-        metavar="SECONDS",
-        help="With --live: calibrate by so many first seconds; 0 by the whole of CAPTURE.",
-    ),
-]
-Speed = Annotated[
-    float,
-    typer.Option(
-        min=0.0,
-        help="With --live CAPTURE: how many times as fast to replay it; 0 as fast as it goes.",
-    ),
-]
-Websocket = Annotated[
-    int | None,
-    typer.Option(
-        metavar="PORT",
-        min=0,
-        max=65535,
-        help="With --live: also send events as JSON to programs that connect to "
-        "ws://127.0.0.1:PORT; 0 takes a free port and says which. Needs capar[live].",
-        show_default=False,
-    ),
-]
-Markers = Annotated[
-    str,
-    typer.Option(
-        "--lsl-markers",
-        metavar="NAME",
-        help="With --live: also send events as JSON in a Lab Streaming Layer stream of that name "
-        "and of type Markers. Needs capar[live].",
-        show_default=False,
-    ),
-]

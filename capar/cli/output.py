@@ -100,6 +100,15 @@ def console() -> "Console":
     return Console(width=None if sys.stdout.isatty() else PIPE_COLUMNS)
 
 
+def emit(text: str, output: Path | None) -> None:
+    """Write text to a file, or to standard output where none is named."""
+    if output is None:
+        typer.echo(text, nl=False)
+        return
+    with written(output) as draft:
+        draft.write_text(text, encoding="utf-8")
+
+
 def check_new_folder(folder: Path) -> None:
     """Check that a folder can be filled: it is not there yet, or it is empty.
 

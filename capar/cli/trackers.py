@@ -1,6 +1,5 @@
 """Live trackers: list them, record one, simulate one."""
 
-import json
 import math
 import time
 from dataclasses import asdict
@@ -10,8 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from capar.cli.options import Json
+from capar.cli.output import print_json
+
 if TYPE_CHECKING:
     from extractors.devices.tracker import LiveTracker
+
+Seconds = Annotated[
+    float, typer.Option("--seconds", min=0.0, help="How long; 0 until it is interrupted.")
+]
 
 
 def devices(
@@ -21,32 +27,27 @@ def devices(
     seconds: Annotated[
         float, typer.Option("--seconds", min=0.1, help="How long to watch it.")
     ] = 2.0,
-    as_json: Annotated[bool, typer.Option("--json", help="Print for machines.")] = False,
+    json: Json = False,
 ) -> None:
-    """List drivers and serial ports, or open a tracker and say what comes from it."""
-    from extractors.devices.drivers import find_tracker
-
-    report = _watched(find_tracker(address), seconds) if address else _listed()
-    if as_json:
-        typer.echo(json.dumps(report, indent=2, sort_keys=True))
-    else:
-        (_show if address else _show_list)(report)
-
-
-def _listed() -> dict[str, Any]:
-    from extractors.devices.drivers import EXAMPLES
+    """List trackers and serial ports, or print what one sends."""
+    from extractors.devices.drivers import EXAMPLES, find_tracker
     from extractors.devices.lines import find_ports
 
-    return {"drivers": EXAMPLES, "ports": find_ports()}
-
-
-def _show_list(report: dict[str, Any]) -> None:
-    typer.echo("drivers, each with an address:")
-    for name, example in report["drivers"].items():
-        typer.echo(f"  {name:<11} {example}")
-    typer.echo("serial ports:" if report["ports"] else "no serial ports")
-    for port, what in report["ports"].items():
-        typer.echo(f"  {port:<11} {what}")
+    if address:
+        report = _watched(find_tracker(address), seconds)
+    else:
+        report = {"drivers": EXAMPLES, "ports": find_ports()}
+    if json:
+        print_json(report, sort_keys=True)
+    elif address:
+        _show(report)
+    else:
+        typer.echo("drivers, each with an address:")
+        for name, example in report["drivers"].items():
+            typer.echo(f"  {name:<11} {example}")
+        typer.echo("serial ports:" if report["ports"] else "no serial ports")
+        for port, what in report["ports"].items():
+            typer.echo(f"  {port:<11} {what}")
 
 
 def _watched(tracker: "LiveTracker", seconds: float) -> dict[str, Any]:
@@ -98,14 +99,13 @@ def record(
         str, typer.Argument(help="A device address, or the file of a recording that was cut off.")
     ],
     output: Annotated[Path, typer.Argument(help="The folder of the capture bundle to make.")],
-    seconds: Annotated[
-        float, typer.Option("--seconds", min=0.0, help="How long; 0 until it is interrupted.")
-    ] = 0.0,
-    as_json: Annotated[bool, typer.Option("--json", help="Print for machines.")] = False,
+    seconds: Seconds = 0.0,
+    json: Json = False,
 ) -> None:
-    """Record a tracker into OUTPUT.live as it sends, then make a capture bundle of it.
+    """Record a tracker to a capture bundle.
 
-    The recording is kept: after a crash or a kill the bundle is made from it.
+    What it sends is written to OUTPUT.live at once, and kept: after a crash the bundle is made
+    from that.
     """
     from capar.model.errors import FileError
     from extractors.devices.recording import read_live_recording, write_bundle
@@ -118,15 +118,22 @@ def record(
         _record(source, live, seconds)
     recording = read_live_recording(live)
     write_bundle(recording, output)
-    report = {
-        "recording": str(live),
-        "bundle": str(output),
-        "frames": len(recording.host_s),
-        "sensors": list(recording.description.sensors),
-        "counts": asdict(recording.counts) if recording.counts else None,
-        "events": [each.message for each in recording.events],
-    }
-    typer.echo(json.dumps(report, indent=2, sort_keys=True) if as_json else _told(report))
+    counts = asdict(recording.counts) if recording.counts else None
+    names = list(recording.description.sensors)
+    if json:
+        report = {
+            "recording": str(live),
+            "bundle": str(output),
+            "frames": len(recording.host_s),
+            "sensors": names,
+            "counts": counts,
+            "events": [each.message for each in recording.events],
+        }
+        print_json(report, sort_keys=True)
+        return
+    lost = f", {counts['lost_records']} poses lost" if counts else "; the recording was cut off"
+    typer.echo(f"{len(recording.host_s)} frames of {', '.join(names)}{lost}")
+    typer.echo(f"wrote {output} from {live}")
 
 
 def _record(address: str, path: Path, seconds: float) -> None:
@@ -150,16 +157,6 @@ def _record(address: str, path: Path, seconds: float) -> None:
     writer.close(tracker.counts)
 
 
-def _told(report: dict[str, Any]) -> str:
-    counts = report["counts"]
-    lost = f", {counts['lost_records']} poses lost" if counts else "; the recording was cut off"
-    names = ", ".join(report["sensors"])
-    return (
-        f"{report['frames']} frames of {names}{lost}\n"
-        f"wrote {report['bundle']} from {report['recording']}"
-    )
-
-
 def simulate(
     kind: Annotated[str, typer.Argument(help="flock, motionstar, fastrak or vrpn.")],
     capture: Annotated[
@@ -178,12 +175,15 @@ def simulate(
         float, typer.Option("--garbled", min=0.0, max=1.0, help="Share of bytes garbled.")
     ] = 0.0,
     port: Annotated[int, typer.Option("--port", help="TCP or UDP port; 0 takes a free one.")] = 0,
-    seconds: Annotated[
-        float, typer.Option("--seconds", min=0.0, help="How long; 0 until it is interrupted.")
-    ] = 0.0,
-    as_json: Annotated[bool, typer.Option("--json", help="Print for machines.")] = False,
+    seconds: Seconds = 0.0,
+    json: Json = False,
 ) -> None:
-    """Simulate a tracker on a pseudo-terminal or on loopback, and say its address."""
+    """Simulate a tracker on a pseudo-terminal or on loopback.
+
+    Its address is printed, for `capar devices`, `record` and `observe --live --device`.
+    """
+    import json as codec
+
     from extractors.devices.drivers import Wanted, make_simulator
     from extractors.devices.simulator import CapturedMotion, MotionSource, SmoothMotion
     from extractors.readers.bundle.capture_toml import read_capture
@@ -196,18 +196,13 @@ def simulate(
     simulator, options = make_simulator(kind, Wanted(motion, erc, lost, garbled, port))
     with simulator:
         address = f"{kind}:{simulator.place}?{options}{names}"
-        typer.echo(json.dumps({"address": address}) if as_json else address)
-        if not as_json:
+        typer.echo(codec.dumps({"address": address}) if json else address)
+        if not json:
             # The shell would take an address that is not quoted for several commands.
             typer.echo(f"in another terminal: capar record {quote(address)} FOLDER", err=True)
-        _wait(seconds)
-
-
-def _wait(seconds: float) -> None:
-    """Until the time is over, or the user ends it."""
-    end = time.monotonic() + seconds
-    try:
-        while not seconds or time.monotonic() < end:
-            time.sleep(0.1)
-    except KeyboardInterrupt:
-        return
+        end = time.monotonic() + seconds
+        try:
+            while not seconds or time.monotonic() < end:
+                time.sleep(0.1)
+        except KeyboardInterrupt:
+            return
