@@ -170,14 +170,7 @@ def observe(
     With --live a segment is printed when it ends, provisional first and then settled; Ctrl-C ends
     it. Other programs get the same events with --json, --websocket or --lsl-markers.
     """
-    forms = {"--json": json, "--script": script, "--pars": pars}
-    named = [form for form, given in forms.items() if given]
-    if len(named) > 1:
-        raise CaparError(f"{' and '.join(named)} print different things; say one of them")
-    if plot:
-        from capar.views.picture import SUFFIXES
-
-        check_writable(plot, suffixes=SUFFIXES)
+    _check_output({"--json": json, "--script": script, "--pars": pars}, plot)
     if actionary and Path(actionary).is_file():
         raise FileError(actionary, "is a file; an Actionary is a folder.", "Name a folder.")
     if actionary:
@@ -190,13 +183,13 @@ def observe(
         source = _Live(
             capture, device, rig, calibration, lead_in, speed, json, name, websocket, lsl_markers
         )
-        seen = _observe_live(source, rule_base(profile, rules, actionary, steady=steady))
-        stored = _store(seen, actionary, name=name, wait_s=wait) if actionary else ""
+        observation = _observe_live(source, rule_base(profile, rules, actionary, steady=steady))
+        stored = [_store(observation, actionary, name=name, wait_s=wait)] if actionary else []
         if not json:
             typer.echo()
-            _print(seen, json=False, script=script, pars=pars)
-        if stored:
-            typer.echo(stored, err=True)
+            _print(observation, json=False, script=script, pars=pars)
+        for line in stored:
+            typer.echo(line, err=True)
         return
     if websocket is not None or lsl_markers:
         raise CaparError("--websocket and --lsl-markers send events of --live; give --live as well")
@@ -224,17 +217,25 @@ def observe(
     if choice is OnUnknown.ASK and _ask_for_names(observation, folder):
         base = rule_base(profile, rules, actionary, steady=steady)
         observation = observe_measured(trial, measurements, rules=base, name=name)
-    if choice is OnUnknown.FAIL:
+    elif choice is OnUnknown.FAIL:
         _fail_on_unknown(observation)
     # Files first: a reader of the output who stops early, as `head` does, ends the command.
-    done = []
-    if plot:
-        done.append(_draw(observation, trial, measurements, plot))
-    if actionary:
-        done.append(_store(observation, actionary, name=name, wait_s=wait))
+    done = [_draw(observation, trial, measurements, plot)] if plot else []
+    done += [_store(observation, actionary, name=name, wait_s=wait)] if actionary else []
     _print(observation, json=json, script=script, pars=pars)
     for line in done:
         typer.echo(line, err=True)
+
+
+def _check_output(forms: dict[str, bool], plot: Path | None) -> None:
+    """Check that the output can be written, before anything is computed."""
+    named = [form for form, given in forms.items() if given]
+    if len(named) > 1:
+        raise CaparError(f"{' and '.join(named)} print different things; say one of them")
+    if plot:
+        from capar.views.picture import SUFFIXES
+
+        check_writable(plot, suffixes=SUFFIXES)
 
 
 def demo(
