@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from extractors.devices.motionstar import SentPacket
 from extractors.devices.simulator import Sent
-from extractors.devices.tracker import Frame, Tracker
+from extractors.devices.tracker import Frame, LiveTracker
 from extractors.devices.vrpn import SentPose
 
 TO_WORLD = Rotation.from_euler("x", 180.0, degrees=True)
@@ -20,7 +20,7 @@ NEAR = 500
 """How many records ahead a pose is looked for first."""
 
 
-def collect(tracker: Tracker, seconds: float) -> list[Frame]:
+def collect(tracker: LiveTracker, seconds: float) -> list[Frame]:
     """The frames of a tracker that is open, for a while."""
     frames: list[Frame] = []
     end = time.monotonic() + seconds
@@ -29,7 +29,7 @@ def collect(tracker: Tracker, seconds: float) -> list[Frame]:
     return frames
 
 
-def take(tracker: Tracker, count: int, *, within_s: float = 60.0) -> list[Frame]:
+def take(tracker: LiveTracker, count: int, *, within_s: float = 60.0) -> list[Frame]:
     """So many frames, or a few more, of a tracker that is open; however busy the computer is."""
     frames: list[Frame] = []
     end = time.monotonic() + within_s

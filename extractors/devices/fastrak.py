@@ -1,4 +1,11 @@
-"""Polhemus Fastrak over RS-232: records, driver and simulator."""
+"""Polhemus Fastrak over RS-232: up to four stations; records, driver and simulator.
+
+The transmitter's frame is taken as x forward, y to the right, z down; quaternions are w x y z,
+sensor to transmitter, as they come. Records are lines of ASCII, or binary with a header; both end
+in CR LF. The carriage return is asked for in binary records too (item 1): with the three bytes of
+the header it frames a record of fixed length, so that a lost byte shows. A record counts where its
+header, its length and its end agree and a quaternion's norm is one.
+"""
 
 import math
 import struct
@@ -10,9 +17,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from extractors.devices.bird_formats import Quaternion, Vector, from_world, to_world
-from extractors.devices.flock import BITS
-from extractors.devices.lines import SerialLine
-from extractors.devices.simulator import Faults, MotionSource, Sent, SimulatedLine, Simulator
+from extractors.devices.lines import BAUDS, BITS, SerialLine
+from extractors.devices.simulator import Faults, MotionSource, Sent, SerialSimulator, SimulatedLine
 from extractors.devices.tracker import (
     Address,
     CycleCounter,
@@ -163,7 +169,6 @@ class RecordParser:
 RECORDS_HZ = 120.0
 """Records a second of all stations together."""
 
-BAUDS = (2400, 4800, 9600, 19200, 38400, 57600, 115200)
 SETTLE_S = 0.2
 """How long the line is left to end what was being sent [s]."""
 
@@ -340,12 +345,11 @@ def pose_of_record(record: StationRecord, form: str) -> tuple[Vector, Quaternion
     return to_world(position, turned)
 
 
-TICK_S = 0.002
 FORMS = {items: form for form, items in ITEMS.items()}
 INCH_CM = 2.54
 
 
-class FastrakSimulator(Simulator):
+class FastrakSimulator(SerialSimulator):
     """A Fastrak with one station a sensor of the motion, at most four.
 
     Args:
@@ -363,75 +367,35 @@ class FastrakSimulator(Simulator):
         log: list[Sent] | None = None,
     ) -> None:
         stations = min(STATIONS, len(motion.sensors))
-        super().__init__(motion, 120.0 / stations)
-        self.skipped = 0
-        self._stations = range(1, stations + 1)
         self._faults = faults or Faults()
-        self._line = SimulatedLine(baud, self._faults)
-        self._log = log
+        super().__init__(motion, RECORDS_HZ / stations, [SimulatedLine(baud, self._faults)], log)
+        self._stations = range(1, stations + 1)
         self._power_up()
 
     def _power_up(self) -> None:
         self._forms = dict.fromkeys(self._stations, "pos_ang")
         self._binary = self._streaming = False
         self._unit_cm = INCH_CM
-        self._commands = bytearray()
-        self._poll_at_s = -1.0
 
-    @property
-    def place(self) -> str:
-        """The device file."""
-        return self._line.path
-
-    def _plug(self) -> None:
-        self._power_up()
-        self._line.plug()
-
-    def _unplug(self) -> None:
-        self._line.unplug()
-
-    def _remove(self) -> None:
-        self._line.remove()
-
-    def _hold_lines(self, held_up_s: float) -> None:
-        self._line.hold(held_up_s)
-
-    def _handles(self) -> list[int]:
-        return [self._line.master] if self._line.master >= 0 else []
-
-    def _wait_s(self) -> float:
-        if self._line.busy or self._poll_at_s >= 0.0:
-            return TICK_S
-        return super()._wait_s()
-
-    def _attend(self, ready: set[int]) -> None:
-        if ready:
-            self._commands += self._line.receive()
-            self._obey_all()
-        now = time.monotonic()
-        if 0.0 <= self._poll_at_s <= now:
-            self._poll_at_s = -1.0
-            self._report(now)
-        self._line.pump(now)
-
-    def _obey_all(self) -> None:
-        """Every command that is whole: one letter, or a letter and a list up to the return."""
-        while self._commands:
-            code = chr(self._commands[0])
-            size = self._commands.find(b"\r") + 1 if code == "O" else 1
+    def _listen(self, line: SimulatedLine) -> None:
+        """Obey every command that is whole: one letter, or a letter and a list up to the return."""
+        line.receive()
+        while line.commands:
+            code = chr(line.commands[0])
+            size = line.commands.find(b"\r") + 1 if code == "O" else 1
             if size == 0:
                 return
-            command = bytes(self._commands[:size])
-            del self._commands[:size]
-            self._obey(code, command)
+            command = bytes(line.commands[:size])
+            del line.commands[:size]
+            self._obey(line, code, command)
 
-    def _obey(self, code: str, command: bytes) -> None:
+    def _obey(self, line: SimulatedLine, code: str, command: bytes) -> None:
         if code == "P":
-            self._poll_at_s = time.monotonic() + self._faults.reply_delay_s
+            line.poll_at_s = time.monotonic() + self._faults.reply_delay_s
         elif code in "Cc":
             self._streaming = code == "C"
             if not self._streaming:
-                self._line.forget()
+                line.forget()
         elif code in "Ff":
             self._binary = code == "f"
         elif code in "Uu":
@@ -450,31 +414,21 @@ class FastrakSimulator(Simulator):
             self._forms[station] = form
 
     def _measure(self, at_s: float) -> None:
-        if not self._streaming or self._line.master < 0:
-            return
-        if self._line.free_at_s - at_s > 1.0 / self._rate_hz:
-            self.skipped += 1
-        else:
-            self._report(at_s)
+        if self._streaming:
+            self._stream(self._lines[0], at_s, 1.0 / self._rate_hz)
 
-    def _report(self, at_s: float) -> None:
+    def _report(self, line: SimulatedLine, at_s: float) -> None:
         """The records of all stations at a time."""
         positions, orientations = self._poses(at_s)
         for station in self._stations:
             form = self._forms[station]
             position, turned = from_world(positions[station - 1], orientations[station - 1])
-            values = [*(position / CM_M / self._unit_cm), *_turned(form, turned)]
+            values = list(position / CM_M / self._unit_cm)
+            if form == "pos_quat":
+                values += list(turned)
+            elif form == "pos_ang":
+                turn = Rotation.from_quat(turned, scalar_first=True)
+                values += list(turn.as_euler("ZYX", degrees=True))
             record = StationRecord(station, " ", tuple(values))
             data = encode_record(record, form, binary=self._binary)
-            intact = self._line.send(data, at_s)
-            if self._log is not None:
-                self._log.append(Sent(station, data, intact))
-
-
-def _turned(form: str, quaternion: np.ndarray) -> list[float]:
-    if form == "pos_quat":
-        return list(quaternion)
-    if form == "pos_ang":
-        turn = Rotation.from_quat(quaternion, scalar_first=True)
-        return list(turn.as_euler("ZYX", degrees=True))
-    return []
+            self._sent(station, data, intact=line.send(data, at_s))

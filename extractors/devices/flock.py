@@ -1,11 +1,21 @@
-"""Ascension Flock of Birds over RS-232: commands, records, driver and simulator."""
+"""Ascension Flock of Birds, or a MotionStar, over RS-232: records, commands, driver, simulator.
+
+A command is one byte and its data, least significant byte first, without terminator or
+acknowledgement; a prefix byte ``0xF0 + address`` sends it to one bird.
+
+A record's words have two bytes of seven bits each, so their two lowest bits are lost; bit 7 is set
+only on the first byte of a record. There is no checksum and no time stamp: a record counts where a
+phasing bit begins it, none stands in it, its address is a known one, and the next byte, if it is
+there, has the next phasing bit. Lost bytes are found so; a byte whose lower bits are garbled shows
+only where a quaternion's or matrix's norm gives it away.
+
+What no simulator can settle stays a switch: the sign of the quaternion on the wire
+(``quaternion=plain``).
+"""
 
 import time
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass, field, replace
-
-import numpy as np
-from scipy.spatial.transform import Rotation
+from dataclasses import dataclass
 
 from capar.model.errors import DeviceError
 from extractors.devices.bird_formats import (
@@ -15,8 +25,8 @@ from extractors.devices.bird_formats import (
     pose_of_words,
     words_of_pose,
 )
-from extractors.devices.lines import SerialLine
-from extractors.devices.simulator import Faults, MotionSource, Sent, SimulatedLine, Simulator
+from extractors.devices.lines import BAUDS, BITS, SerialLine
+from extractors.devices.simulator import Faults, MotionSource, Sent, SerialSimulator, SimulatedLine
 from extractors.devices.tracker import (
     Address,
     CycleCounter,
@@ -26,8 +36,59 @@ from extractors.devices.tracker import (
     FrameCollector,
     LiveTracker,
     SensorReading,
-    parse_address,
 )
+
+POINT, STREAM, RUN, SLEEP, EXAMINE, CHANGE = 0x42, 0x40, 0x46, 0x47, 0x4F, 0x50
+HEMISPHERE, NEXT_TRANSMITTER, FBB_RESET, PREFIX = 0x4C, 0x30, 0x2F, 0xF0
+EVERY = {1: 0x51, 2: 0x52, 8: 0x53, 32: 0x54}
+"""Report every nth cycle: the command by n."""
+
+HEMISPHERES = {"front": b"\x00\x00", "rear": b"\x00\x01", "right": b"\x06\x00",
+               "left": b"\x06\x01", "lower": b"\x0c\x00", "upper": b"\x0c\x01"}  # fmt: skip
+"""The half of space in which a sensor moves, seen from the transmitter."""
+
+STATUS, FIRMWARE, CRYSTAL, SCALING, COUNT, RATE, ERROR = 0, 1, 2, 3, 6, 7, 10
+MODEL, EXPANDED_ERROR, LINE_FREQUENCY, HEMISPHERE_PARAMETER = 15, 16, 20, 22
+GROUP_MODE, FLOCK_STATUS, AUTO_CONFIG = 35, 36, 50
+SIZES = {STATUS: 2, FIRMWARE: 2, CRYSTAL: 2, SCALING: 2, COUNT: 2, RATE: 2, ERROR: 1, MODEL: 10,
+         EXPANDED_ERROR: 2, LINE_FREQUENCY: 1, HEMISPHERE_PARAMETER: 2, GROUP_MODE: 1,
+         FLOCK_STATUS: 14, AUTO_CONFIG: 1}  # fmt: skip
+"""Bytes of a parameter's value."""
+
+ACCESSIBLE, RUNNING, SENSOR, ERC = 0x80, 0x40, 0x20, 0x10
+"""Bits of a unit in the flock status."""
+
+RATE_UNIT = 256.0
+"""Parameter 7 is the measurement rate [Hz] times this."""
+
+MOST_HZ = 144.0
+"""Measuring cycles a second that the birds do at most."""
+
+ERRORS = {
+    1: "system memory failed its test",
+    2: "non-volatile memory failed its test",
+    3: "the configuration in non-volatile memory is corrupt",
+    4: "the transmitter's configuration is corrupt",
+    5: "the sensor's configuration is corrupt",
+    6: "a command it does not know or cannot do now",
+    7: "a command that only the master may be given",
+    8: "no birds are connected or accessible",
+    9: "a bird is not initialised; auto-configure the flock first",
+    10: "an error of receiving on the bus between the birds",
+    11: "an overrun or framing error on its serial line; check the baud rate",
+    13: "a bird on the bus does not answer",
+    28: "no pulse to synchronise with a screen",
+    29: "the transmitter is not active",
+    30: "the extended-range transmitter is not attached",
+    31: "the processor's time overflowed; lower the measurement rate",
+    32: "a sensor is saturated; it is too near the transmitter",
+    34: "its watchdog reset it",
+    35: "it is too hot",
+}
+"""What error codes mean."""
+
+FATAL = frozenset({1, 2, 15, 16, *range(20, 28)})
+"""Errors after which a bird does not go on."""
 
 PHASE = 0x80
 KEPT = 0xFFFC
@@ -35,6 +96,48 @@ KEPT = 0xFFFC
 
 SLACK_S = 0.004
 """What a record may take longer than its bytes do, and count without a byte after it [s]."""
+
+SETTLE_S = 0.75
+"""How long the line is left idle around auto-configuration: 0.6 s, and what delays it [s]."""
+
+REPLY_S = 0.3
+"""How long a reply to a question may take beyond its bytes [s]."""
+
+ATTEMPTS = 6
+"""How often a question is put, on a line that may lose bytes."""
+
+POLL_REPLY_S = 1.0
+"""How long the answer to a poll may take to begin [s]."""
+
+POLL_IDLE_S = 0.1
+"""A poll's answer that stops for so long has ended [s]."""
+
+AFTER_RESET_S = 2.0
+"""How long units take to restart [s]."""
+
+CONFIGURATIONS = 3
+"""How often auto-configuration is tried."""
+
+SILENCE_S = 1.5
+"""A flock that sends nothing for so long is lost [s]."""
+
+IDLE_S = 0.006
+"""A line without a byte for so long has sent its record [s]."""
+
+AHEAD = 50
+"""How many cycles birds with lines of their own may be apart."""
+
+
+def error_text(code: int, unit: int = 0) -> str:
+    """What an error code says, and of which unit where that is known."""
+    kind = "fatal error" if code in FATAL else "error"
+    meaning = ERRORS.get(code, "of a meaning that is not documented here")
+    return f"{kind} {code}: {meaning}" + (f" (unit {unit})" if unit else "")
+
+
+def change(parameter: int, value: int) -> bytes:
+    """The command that sets a parameter."""
+    return bytes([CHANGE, parameter]) + value.to_bytes(SIZES[parameter], "little")
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,19 +166,21 @@ def decode_word(low: int, high: int) -> int:
     return value - 0x10000 if value & 0x8000 else value
 
 
-def encode_record(
-    words: Iterable[int], *, address: int | None = None, buttons: int | None = None
-) -> bytes:
-    """The bytes of a record; with an address in group mode, with buttons in button mode."""
+def encode_record(words: Iterable[int], *, address: int | None = None) -> bytes:
+    """The bytes of a record; with an address in group mode."""
     out = bytearray(byte for word in words for byte in encode_word(word))
     out[0] |= PHASE
-    out += bytes(each & 0x7F for each in (buttons, address) if each is not None)
-    return bytes(out)
+    return bytes(out) + (b"" if address is None else bytes([address & 0x7F]))
 
 
-def record_size(form: BirdFormat, *, group: bool, buttons: bool = False) -> int:
+def record_size(form: BirdFormat, *, group: bool) -> int:
     """Bytes of a record."""
-    return 2 * form.words + buttons + group
+    return 2 * form.words + group
+
+
+def line_limit_hz(form: BirdFormat, birds: int, baud: int, *, group: bool) -> float:
+    """Cycles a second of all birds on one line that its speed carries [Hz]."""
+    return baud / BITS / (birds * record_size(form, group=group))
 
 
 class RecordParser:
@@ -84,23 +189,17 @@ class RecordParser:
     Args:
         form: The format that the birds were told to send.
         addresses: The birds in the group; None where each bird has a line of its own.
-        buttons: Whether records carry a button byte.
         byte_s: Time of a byte on the line, for time stamps [s].
     """
 
     def __init__(
-        self,
-        form: BirdFormat,
-        *,
-        addresses: Collection[int] | None = None,
-        buttons: bool = False,
-        byte_s: float = 0.0,
+        self, form: BirdFormat, *, addresses: Collection[int] | None = None, byte_s: float = 0.0
     ) -> None:
         self.dropped_bytes = 0
         self.wrong_addresses = 0
         self._words = form.words
         self._addresses = addresses
-        self._size = record_size(form, group=addresses is not None, buttons=buttons)
+        self._size = record_size(form, group=addresses is not None)
         self._byte_s = byte_s
         self._buffer = bytearray()
         self._stamp_s = 0.0
@@ -189,134 +288,6 @@ class RecordParser:
         return [record]
 
 
-POINT = 0x42
-STREAM = 0x40
-RUN = 0x46
-SLEEP = 0x47
-EXAMINE = 0x4F
-CHANGE = 0x50
-HEMISPHERE = 0x4C
-NEXT_TRANSMITTER = 0x30
-FBB_RESET = 0x2F
-PREFIX = 0xF0
-
-EVERY = {1: 0x51, 2: 0x52, 8: 0x53, 32: 0x54}
-"""Report every nth cycle: the command by n."""
-
-HEMISPHERES = {
-    "front": b"\x00\x00",
-    "rear": b"\x00\x01",
-    "right": b"\x06\x00",
-    "left": b"\x06\x01",
-    "lower": b"\x0c\x00",
-    "upper": b"\x0c\x01",
-}
-"""The half of space in which a sensor moves, seen from the transmitter."""
-
-STATUS, FIRMWARE, CRYSTAL, SCALING, COUNT, RATE, ERROR = 0, 1, 2, 3, 6, 7, 10
-MODEL, EXPANDED_ERROR, LINE_FREQUENCY, HEMISPHERE_PARAMETER = 15, 16, 20, 22
-GROUP_MODE, FLOCK_STATUS, AUTO_CONFIG = 35, 36, 50
-
-SIZES = {
-    STATUS: 2,
-    FIRMWARE: 2,
-    CRYSTAL: 2,
-    SCALING: 2,
-    COUNT: 2,
-    RATE: 2,
-    ERROR: 1,
-    MODEL: 10,
-    EXPANDED_ERROR: 2,
-    LINE_FREQUENCY: 1,
-    HEMISPHERE_PARAMETER: 2,
-    GROUP_MODE: 1,
-    FLOCK_STATUS: 14,
-    AUTO_CONFIG: 1,
-}
-"""Bytes of a parameter's value."""
-
-ACCESSIBLE, RUNNING, SENSOR, ERC = 0x80, 0x40, 0x20, 0x10
-"""Bits of a unit in the flock status."""
-
-RATE_UNIT = 256.0
-"""Parameter 7 is the measurement rate [Hz] times this."""
-
-MOST_HZ = 144.0
-"""Measuring cycles a second that the birds do at most."""
-
-BITS = 10
-"""Bits of a byte on an 8N1 line: start, eight of data, stop."""
-
-ERRORS = {
-    1: "system memory failed its test",
-    2: "non-volatile memory failed its test",
-    3: "the configuration in non-volatile memory is corrupt",
-    4: "the transmitter's configuration is corrupt",
-    5: "the sensor's configuration is corrupt",
-    6: "a command it does not know or cannot do now",
-    7: "a command that only the master may be given",
-    8: "no birds are connected or accessible",
-    9: "a bird is not initialised; auto-configure the flock first",
-    10: "an error of receiving on the bus between the birds",
-    11: "an overrun or framing error on its serial line; check the baud rate",
-    13: "a bird on the bus does not answer",
-    28: "no pulse to synchronise with a screen",
-    29: "the transmitter is not active",
-    30: "the extended-range transmitter is not attached",
-    31: "the processor's time overflowed; lower the measurement rate",
-    32: "a sensor is saturated; it is too near the transmitter",
-    34: "its watchdog reset it",
-    35: "it is too hot",
-}
-"""What error codes mean."""
-
-FATAL = frozenset({1, 2, 15, 16, *range(20, 28)})
-"""Errors after which a bird does not go on."""
-
-
-def error_text(code: int, unit: int = 0) -> str:
-    """What an error code says, and of which unit where that is known."""
-    kind = "fatal error" if code in FATAL else "error"
-    meaning = ERRORS.get(code, "of a meaning that is not documented here")
-    return f"{kind} {code}: {meaning}" + (f" (unit {unit})" if unit else "")
-
-
-def examine(parameter: int) -> bytes:
-    """Ask for a parameter's value."""
-    return bytes([EXAMINE, parameter])
-
-
-def change(parameter: int, value: int) -> bytes:
-    """Set a parameter."""
-    return bytes([CHANGE, parameter]) + value.to_bytes(SIZES[parameter], "little")
-
-
-def addressed(address: int, command: bytes) -> bytes:
-    """A command to one bird of the flock."""
-    return bytes([PREFIX + address]) + command
-
-
-def hemisphere(name: str) -> bytes:
-    """Choose the hemisphere."""
-    return bytes([HEMISPHERE]) + HEMISPHERES[name]
-
-
-def rate_word(rate_hz: float) -> int:
-    """Value of parameter 7 for a measurement rate [Hz]."""
-    return round(rate_hz * RATE_UNIT)
-
-
-def line_limit_hz(form: BirdFormat, birds: int, baud: int, *, group: bool) -> float:
-    """Cycles a second of all birds on one line that its speed carries [Hz]."""
-    return baud / BITS / (birds * record_size(form, group=group))
-
-
-BAUDS = (2400, 4800, 9600, 19200, 38400, 57600, 115200)
-EXTENDED_RANGE_INCH = 144.0
-SETTLE_S = 0.75
-"""How long the line is left idle around auto-configuration: 0.6 s, and what delays it [s]."""
-
-
 @dataclass(frozen=True)
 class FlockSettings:
     """Units, format, rate and lines of a flock.
@@ -365,11 +336,6 @@ class FlockSettings:
         """Whether one line carries the records of several units, with their addresses."""
         return len(self.ports) == 1 and self.units > 1
 
-    @property
-    def measured_hz(self) -> float:
-        """Measuring cycles a second."""
-        return self.rate_hz * self.every
-
 
 def flock_settings(address: Address) -> FlockSettings:
     """The settings that an address holds.
@@ -379,14 +345,14 @@ def flock_settings(address: Address) -> FlockSettings:
     """
     ports = tuple(address.place.split(","))
     birds = address.integer("birds", len(ports), low=1, high=13)
-    erc = address.flag("erc", default=False)
+    erc = address.flag("erc")
     if len(ports) > 1 and birds != len(ports):
         raise address.error(f"{len(ports)} ports for {birds} birds; give one port a bird, or one")
     if len(ports) > 1 and erc:
         raise address.error("with a port for each bird the master is the first one's; erc=no")
     first = 2 if erc else 1
-    usual = "144" if erc else "36"
-    inches = float(address.choice("range", ("144",) if erc else ("36", "72"), usual))
+    ranges = ("144",) if erc else ("36", "72")
+    inches = float(address.choice("range", ranges, ranges[0]))
     conjugated = address.choice("quaternion", ("conjugated", "plain"), "conjugated")
     rate_hz = address.number("rate", 30.0, low=0.1, high=MOST_HZ)
     settings = FlockSettings(
@@ -401,11 +367,20 @@ def flock_settings(address: Address) -> FlockSettings:
         scaling=Scaling(inches, conjugated == "conjugated"),
         hemisphere=address.choice("hemisphere", HEMISPHERES, "front"),
         line_frequency_hz=int(address.choice("power", ("0", "50", "60"), "0")),
-        reset=address.flag("reset", default=False),
+        reset=address.flag("reset"),
         settle_s=address.number("settle", SETTLE_S, low=0.0, high=10.0),
     )
     address.close()
-    _check_rate(address, settings)
+    on_line = birds if len(ports) == 1 else 1
+    limit_hz = line_limit_hz(settings.form, on_line, settings.baud, group=settings.group)
+    if rate_hz > limit_hz:
+        size = record_size(settings.form, group=settings.group)
+        raise address.error(
+            f"rate={rate_hz:g} does not pass the line: {on_line} x {size} bytes a frame are "
+            f"{on_line * size * rate_hz:.0f} bytes a second, {settings.baud} baud carry "
+            f"{settings.baud / BITS:.0f}, so at most {limit_hz:.4g} Hz. Lower the rate, choose a "
+            "shorter format, give each bird a port of its own, or use a MotionStar's Ethernet."
+        )
     return settings
 
 
@@ -421,37 +396,6 @@ def _every(address: Address, rate_hz: float) -> int:
     return every
 
 
-def _check_rate(address: Address, settings: FlockSettings) -> None:
-    """Refuse a rate that a line cannot carry, with the arithmetic."""
-    birds = len(settings.names) if len(settings.ports) == 1 else 1
-    limit_hz = line_limit_hz(settings.form, birds, settings.baud, group=settings.group)
-    if settings.rate_hz <= limit_hz:
-        return
-    size = record_size(settings.form, group=settings.group)
-    raise address.error(
-        f"rate={settings.rate_hz:g} does not pass the line: {birds} x {size} bytes a frame are "
-        f"{birds * size * settings.rate_hz:.0f} bytes a second, {settings.baud} baud carry "
-        f"{settings.baud / BITS:.0f}, so at most {limit_hz:.4g} Hz. Lower the rate, choose a "
-        "shorter format, give each bird a port of its own, or use a MotionStar's Ethernet."
-    )
-
-
-REPLY_S = 0.3
-"""How long a reply to a question may take beyond its bytes [s]."""
-
-ATTEMPTS = 6
-"""How often a question is put, on a line that may lose bytes."""
-
-POLL_REPLY_S = 1.0
-"""How long the answer to a poll may take to begin [s]."""
-
-POLL_IDLE_S = 0.1
-"""A poll's answer that stops for so long has ended [s]."""
-
-AFTER_RESET_S = 2.0
-"""How long units take to restart [s]."""
-
-
 class FlockPort:
     """One line, the parser of what comes from it, and questions to the unit at its end."""
 
@@ -459,33 +403,29 @@ class FlockPort:
         self.index = index
         self.path = path
         self.line = SerialLine(path, settings.baud)
+        self._settings = settings
         self._byte_s = BITS / settings.baud
         self._expected = len(settings.names) if settings.group else 1
         self._last = settings.addresses[-1] if settings.group else 0
         self._late = False
         self.cycles = CycleCounter(self._expected)
-        self._quiet_s = settings.settle_s / 3.0
         self.parser = RecordParser(
             settings.form,
             addresses=settings.addresses if settings.group else None,
             byte_s=self._byte_s,
         )
 
-    def tell(self, command: bytes) -> None:
-        """Give a command, which nothing acknowledges."""
-        self.line.write(command)
-
-    def open(self, *, reset: bool) -> None:
+    def open(self) -> None:
         """Open the line, and have the unit quiet."""
         self.line.open()
-        if reset and self.line.reset_device():
+        if self._settings.reset and self.line.reset_device():
             time.sleep(AFTER_RESET_S)
         self.quieten()
 
     def quieten(self) -> None:
         """End whatever the unit is sending."""
-        self.tell(bytes([POINT]))
-        time.sleep(self._quiet_s)
+        self.line.write(bytes([POINT]))
+        time.sleep(self._settings.settle_s / 3.0)
         self.line.drop_input()
 
     def ask(self, parameter: int) -> bytes:
@@ -497,7 +437,7 @@ class FlockPort:
         size = SIZES[parameter]
         for _ in range(ATTEMPTS):
             self.line.drop_input()
-            self.tell(examine(parameter))
+            self.line.write(bytes([EXAMINE, parameter]))
             value = self.line.read_exactly(size, REPLY_S + size * self._byte_s)
             if len(value) == size:
                 return value
@@ -506,20 +446,14 @@ class FlockPort:
             "switch, the cable and the baud rate (DIP switches)"
         )
 
-    def identity(self) -> dict[str, str]:
-        """Model and firmware."""
-        firmware = self.ask(FIRMWARE)
-        model = self.ask(MODEL).decode("ascii", "replace").strip()
-        return {"model": model, "firmware": f"{firmware[0]}.{firmware[1]}"}
-
-    def auto_configure(self, units: int, settle_s: float) -> None:
+    def auto_configure(self) -> None:
         """Have the master find the other units; the line stays idle before and after."""
-        time.sleep(settle_s)
-        self.tell(change(AUTO_CONFIG, units))
-        time.sleep(settle_s)
+        time.sleep(self._settings.settle_s)
+        self.line.write(change(AUTO_CONFIG, self._settings.units))
+        time.sleep(self._settings.settle_s)
         self.line.drop_input()
 
-    def check(self, settings: FlockSettings) -> None:
+    def check(self) -> None:
         """Check that all units run and none has an error.
 
         Raises:
@@ -527,37 +461,29 @@ class FlockPort:
         """
         code = self.ask(ERROR)[0]
         if code:
-            unit = self.ask(EXPANDED_ERROR)[0]
-            raise DeviceError(f"{self.path}: {error_text(code, unit)}")
-        if settings.units == 1:
-            return
-        status = self.ask(FLOCK_STATUS)
-        for address in settings.addresses:
+            raise DeviceError(f"{self.path}: {error_text(code, self.ask(EXPANDED_ERROR)[0])}")
+        units = self._settings.units
+        status = self.ask(FLOCK_STATUS) if units > 1 else b""
+        for address in self._settings.addresses if units > 1 else ():
             bits = status[address - 1]
             if not bits & ACCESSIBLE or not bits & RUNNING:
                 found = sum(bool(each & ACCESSIBLE) for each in status)
                 raise DeviceError(
-                    f"{self.path}: unit {address} of {settings.units} does not run; {found} are "
-                    "there. Check its fly switch and address, and birds= and erc= of the address"
+                    f"{self.path}: unit {address} of {units} does not run; {found} are there. "
+                    "Check its fly switch and address, and birds= and erc= of the address"
                 )
-
-    def stream(self, every: int) -> None:
-        """Have the unit send every nth cycle."""
-        self.tell(bytes([EVERY[every], STREAM]))
 
     def records(self, timeout_s: float) -> list[Record]:
         """The records that come within a wait, or that the idle line shows to be whole."""
         data = self.line.read(timeout_s)
-        if data:
-            return self.parser.feed(data, time.monotonic())
-        return self.parser.settle()
+        return self.parser.feed(data, time.monotonic()) if data else self.parser.settle()
 
     def poll(self) -> None:
         """Ask for one cycle; what came too late for the last one is forgotten."""
         if self._late:
             self.line.drop_input()
         self.parser.clear()
-        self.tell(bytes([POINT]))
+        self.line.write(bytes([POINT]))
 
     def answer(self) -> list[Record]:
         """The records that answer a poll, until the last one is there or the line is silent."""
@@ -578,19 +504,6 @@ class FlockPort:
         return out
 
 
-CONFIGURATIONS = 3
-"""How often auto-configuration is tried."""
-
-SILENCE_S = 1.5
-"""A flock that sends nothing for so long is lost [s]."""
-
-IDLE_S = 0.006
-"""A line without a byte for so long has sent its record [s]."""
-
-AHEAD = 50
-"""How many cycles birds with lines of their own may be apart."""
-
-
 class FlockTracker(LiveTracker):
     """A flock on one line, or on one line a bird.
 
@@ -603,12 +516,11 @@ class FlockTracker(LiveTracker):
 
     def __init__(self, address: Address) -> None:
         super().__init__()
-        self._settings: FlockSettings = flock_settings(address)
+        self._settings = flock_settings(address)
         self._details: dict[str, str] = {}
         self._ports: list[FlockPort] = []
         self._frames = FrameCollector(len(self._settings.names), self.counts)
-        self._start_s = 0.0
-        self._next_poll_s = 0.0
+        self._start_s = self._next_poll_s = 0.0
         self._cycle = -1
 
     def describe(self) -> Description:
@@ -626,12 +538,12 @@ class FlockTracker(LiveTracker):
 
     def _connect(self) -> None:
         settings = self._settings
-        self._ports = [
-            FlockPort(each, index, settings) for index, each in enumerate(settings.ports)
-        ]
+        self._ports = [FlockPort(path, n, settings) for n, path in enumerate(settings.ports)]
         for port in self._ports:
-            port.open(reset=settings.reset)
-        self._details = self._ports[0].identity()
+            port.open()
+        firmware = self._ports[0].ask(FIRMWARE)
+        model = self._ports[0].ask(MODEL).decode("ascii", "replace").strip()
+        self._details = {"model": model, "firmware": f"{firmware[0]}.{firmware[1]}"}
         self._configure()
         self._frames = FrameCollector(
             len(settings.names),
@@ -643,59 +555,52 @@ class FlockTracker(LiveTracker):
         self._cycle = -1
         if settings.stream:
             for port in self._ports:
-                port.stream(settings.every)
+                port.line.write(bytes([EVERY[settings.every], STREAM]))
 
     def _configure(self) -> None:
-        settings, master = self._settings, self._ports[0]
-        for index, address in enumerate(settings.addresses):
-            port = self._ports[index % len(self._ports)]
-            chosen = bytes([settings.form.command]), hemisphere(settings.hemisphere)
-            for command in chosen:
-                port.tell(addressed(address, command) if settings.group else command)
-        if not settings.erc:
-            scale = int(settings.scaling.range_inch > 36.0)
-            for port in self._ports:
-                port.tell(change(SCALING, scale))
-        master.tell(change(RATE, rate_word(settings.measured_hz)))
-        if settings.line_frequency_hz:
-            master.tell(change(LINE_FREQUENCY, settings.line_frequency_hz))
-        if settings.units == 1:
-            master.check(settings)
-        else:
-            self._auto_configure(master)
-
-    def _auto_configure(self, master: FlockPort) -> None:
-        """Have the master find the other units, again if some did not hear it.
+        """Set up every unit, and have the master find the others, again if some did not hear it.
 
         Raises:
             DeviceError: Units are missing, or report an error, each time.
         """
+        settings, master = self._settings, self._ports[0]
+        hemisphere = bytes([HEMISPHERE]) + HEMISPHERES[settings.hemisphere]
+        for index, address in enumerate(settings.addresses):
+            line = self._ports[index % len(self._ports)].line
+            for command in (bytes([settings.form.command]), hemisphere):
+                line.write(bytes([PREFIX + address] * settings.group) + command)
+        if not settings.erc:
+            for port in self._ports:
+                port.line.write(change(SCALING, int(settings.scaling.range_inch > 36.0)))
+        measured_hz = settings.rate_hz * settings.every
+        master.line.write(change(RATE, round(measured_hz * RATE_UNIT)))
+        if settings.line_frequency_hz:
+            master.line.write(change(LINE_FREQUENCY, settings.line_frequency_hz))
         for attempt in range(1, CONFIGURATIONS + 1):
-            master.auto_configure(self._settings.units, self._settings.settle_s)
-            if self._settings.group:
-                master.tell(change(GROUP_MODE, 1))
+            if settings.units > 1:
+                master.auto_configure()
+            if settings.group:
+                master.line.write(change(GROUP_MODE, 1))
             try:
-                master.check(self._settings)
+                master.check()
             except DeviceLostError:
                 raise
             except DeviceError:
-                if attempt == CONFIGURATIONS:
+                if attempt == CONFIGURATIONS or settings.units == 1:
                     raise
             else:
                 return
 
     def _disconnect(self) -> None:
+        self._take_counts()
         for port in self._ports:
-            self.counts.dropped_bytes += port.parser.dropped_bytes
-            self.counts.refused_records += port.parser.wrong_addresses
-            port.parser.dropped_bytes = port.parser.wrong_addresses = 0
             port.line.close()
 
     def _stop(self) -> None:
         for port in self._ports:
             try:
                 port.quieten()
-                port.tell(bytes([SLEEP]))
+                port.line.write(bytes([SLEEP]))
             except DeviceLostError:
                 continue
 
@@ -726,7 +631,10 @@ class FlockTracker(LiveTracker):
         return out
 
     def _begin(self, port: FlockPort, records: list[Record]) -> None:
-        """Number a line's first cycle; of several records the last one has just arrived."""
+        """Number a line's first cycle; of several records the last one has just arrived.
+
+        What lies before the first record of all is not missing.
+        """
         first = records[0]
         place = self._settings.addresses.index(first.address) if self._settings.group else 0
         cycle = 0
@@ -734,12 +642,13 @@ class FlockTracker(LiveTracker):
             since_s = records[-1].stamp_s - self._start_s
             cycle = max(0, round(since_s * self._settings.rate_hz) - len(records) + 1)
         port.cycles.start(cycle, place - 1)
-        self._frames_begin(cycle)
+        if self._cycle < 0:
+            self._cycle = cycle
+            self._frames.start_after(cycle - 1)
 
     def _polled(self, timeout_s: float) -> list[Frame]:
         """One cycle of polls, if its time comes before the wait is over."""
-        now = time.monotonic()
-        time.sleep(max(0.0, min(timeout_s, self._next_poll_s - now)))
+        time.sleep(max(0.0, min(timeout_s, self._next_poll_s - time.monotonic())))
         if time.monotonic() < self._next_poll_s:
             return []
         period_s = 1.0 / self._settings.rate_hz
@@ -757,28 +666,30 @@ class FlockTracker(LiveTracker):
         """The frames that a record completes, once its words are a pose and its cycle is known."""
         settings = self._settings
         index = settings.addresses.index(record.address) if settings.group else port.index
-        place = index if settings.group else 0
-        streamed = settings.stream
-        cycle = port.cycles.cycle_of(place, missed=record.missed) if streamed else self._cycle
+        cycle = self._cycle
+        if settings.stream:
+            cycle = port.cycles.cycle_of(index if settings.group else 0, missed=record.missed)
         pose = pose_of_words(record.words, settings.form, settings.scaling)
         if pose is None:
             self.counts.refused_records += 1
             return []
         return self._frames.add(cycle, SensorReading(index, record.stamp_s, *pose))
 
-    def _frames_begin(self, cycle: int) -> None:
-        """What lies before the first record of all is not missing."""
-        if self._cycle < 0:
-            self._cycle = cycle
-            self._frames.start_after(cycle - 1)
 
+MEASURED_HZ = 103.3
+"""Measuring cycles a second of a simulated flock until it is told otherwise."""
 
+WRONG_ADDRESS = 0x7F
+"""Address of no bird."""
+
+BY_COMMAND = {each.command: each for each in FORMATS.values()}
+EVERY_BY_COMMAND = {command: every for every, command in EVERY.items()}
 DATA_SIZES = {HEMISPHERE: 2, NEXT_TRANSMITTER: 1, EXAMINE: 1}
 
 
 @dataclass(frozen=True)
 class FlockRig:
-    """What the simulated flock consists of."""
+    """What a simulated flock consists of."""
 
     erc: bool = False
     """Whether unit 1 is an extended-range controller without a sensor."""
@@ -796,99 +707,18 @@ class FlockRig:
     """Addresses of units that do not answer on the bus."""
 
 
-@dataclass
-class Bird:
-    """The settings of one unit."""
+class _BirdLine(SimulatedLine):
+    """One line, the unit at its end, and whether it streams."""
 
-    form: BirdFormat = FORMATS["pos_ang"]
-    hemisphere: bytes = b"\x00\x00"
-
-
-@dataclass
-class Desk:
-    """One line, the commands that come by it, and whether it streams."""
-
-    line: SimulatedLine
-    unit: int
-    """The unit at its end."""
-
-    commands: bytearray = field(default_factory=bytearray)
-    streaming: bool = False
-    every: int = 1
-    target: int = 0
-    poll_at_s: float = -1.0
+    def __init__(self, unit: int, baud: int, faults: Faults) -> None:
+        super().__init__(baud, faults)
+        self.unit = unit
+        self.streaming = False
+        self.every = 1
+        self.target = 0
 
 
-def range_inch(rig: FlockRig, scaling: int) -> float:
-    """Range of positions [inch] at a value of parameter 3."""
-    return 144.0 if rig.erc else 72.0 if scaling else 36.0
-
-
-def command_size(data: bytearray) -> int:
-    """Bytes of the command that some bytes begin; more than there are where it is cut off."""
-    if not data:
-        return 0
-    if data[0] == CHANGE:
-        return 2 + (SIZES.get(data[1], 0) if len(data) > 1 else 1)
-    return 1 + DATA_SIZES.get(data[0], 0)
-
-
-AGREE_DEG = 3.0
-"""How far readings of a sensor that lies still may be apart [degrees]."""
-
-READ_S = 5.0
-
-
-def find_quaternion_sign(text: str) -> str:
-    """The value of the option ``quaternion`` that is right for a flock.
-
-    Args:
-        text: The flock's address. Its first sensor lies still, turned by a good deal.
-
-    Raises:
-        DeviceError: It gives no poses, moves, or is turned too little to tell.
-    """
-    address = parse_address(text)
-    matrix = _orientation(address, "mat", "conjugated")
-    apart = {
-        sign: np.degrees((_orientation(address, "quat", sign).inv() * matrix).magnitude())
-        for sign in ("conjugated", "plain")
-    }
-    agreeing = [sign for sign, angle in apart.items() if angle < AGREE_DEG]
-    if len(agreeing) == 1:
-        return agreeing[0]
-    said = " and ".join(f"{angle:.1f} degrees as {sign}" for sign, angle in apart.items())
-    remedy = "turn the first sensor by about 45 degrees" if agreeing else "keep it still"
-    raise DeviceError(f"{text}: matrix and quaternion differ by {said}; {remedy} and try again")
-
-
-def _orientation(address: Address, form: str, sign: str) -> Rotation:
-    """The first sensor's orientation, read once in a format."""
-    options = {**address.options, "format": form, "quaternion": sign, "mode": "point"}
-    options["rate"] = "10"
-    with FlockTracker(replace(address, options=options)) as flock:
-        end = time.monotonic() + READ_S
-        while time.monotonic() < end:
-            for frame in flock.poll(0.2):
-                if np.isfinite(frame.orientations[0]).all():
-                    return Rotation.from_quat(frame.orientations[0], scalar_first=True)
-    raise DeviceError(f"{address.text}: the first sensor gives no {form} in {READ_S:g} s")
-
-
-TICK_S = 0.002
-"""How often a line that has something to send is attended to [s]."""
-
-MEASURED_HZ = 103.3
-"""Measuring cycles a second until it is told otherwise."""
-
-WRONG_ADDRESS = 0x7F
-"""Address of no bird."""
-
-BY_COMMAND = {each.command: each for each in FORMATS.values()}
-EVERY_BY_COMMAND = {command: every for every, command in EVERY.items()}
-
-
-class FlockSimulator(Simulator):
+class FlockSimulator(SerialSimulator):
     """A flock whose birds measure a motion, one sensor a bird.
 
     What it does where the protocol's description is silent: a cycle for which the line has no
@@ -908,144 +738,89 @@ class FlockSimulator(Simulator):
         faults: Faults | None = None,
         log: list[Sent] | None = None,
     ) -> None:
-        super().__init__(motion, MEASURED_HZ)
         self.rig = rig or FlockRig()
         self.faults = faults or Faults()
-        self.skipped = 0
-        self._log = log
         first = 2 if self.rig.erc else 1
         self._addresses = tuple(range(first, first + len(motion.sensors)))
         self._units = len(motion.sensors) + self.rig.erc
         ends = self._addresses if self.rig.line_a_bird else (1,)
-        self._desks = [Desk(SimulatedLine(self.rig.baud, self.faults), unit) for unit in ends]
+        self._desks = [_BirdLine(unit, self.rig.baud, self.faults) for unit in ends]
+        super().__init__(motion, MEASURED_HZ, [*self._desks], log)
         self._power_up()
 
     def _power_up(self) -> None:
-        self._birds = {each: Bird() for each in range(1, self._units + 1)}
+        for desk in self._desks:
+            desk.streaming = False
+        self._forms = dict.fromkeys(range(1, self._units + 1), FORMATS["pos_ang"])
+        self._hemispheres = dict.fromkeys(self._forms, HEMISPHERES["front"])
         self._rate_hz = MEASURED_HZ
-        self._range_inch = range_inch(self.rig, 0)
+        self._scaling = 0
         self._group = False
         self._configured = self._units == 1
         self._error, self._error_unit = self.rig.error, 0
         self._heard_s = self._configured_s = -1e9
 
-    @property
-    def paths(self) -> tuple[str, ...]:
-        """The lines' device files; they stay the same when a plug is pulled."""
-        return tuple(each.line.path for each in self._desks)
-
-    @property
-    def place(self) -> str:
-        """The place in an address: the device files, divided by commas."""
-        return ",".join(self.paths)
-
-    def _plug(self) -> None:
-        self._power_up()
-        for desk in self._desks:
-            desk.line.plug()
-
-    def _unplug(self) -> None:
-        for desk in self._desks:
-            desk.line.unplug()
-            desk.streaming = False
-            desk.commands.clear()
-
-    def _remove(self) -> None:
-        for desk in self._desks:
-            desk.line.remove()
-
-    def _hold_lines(self, held_up_s: float) -> None:
-        for desk in self._desks:
-            desk.line.hold(held_up_s)
-
-    def _handles(self) -> list[int]:
-        return [each.line.master for each in self._desks if each.line.master >= 0]
-
-    def _wait_s(self) -> float:
-        """Until something is to be sent."""
-        if any(each.line.busy or each.poll_at_s >= 0.0 for each in self._desks):
-            return TICK_S
-        return super()._wait_s()
-
-    def _attend(self, ready: set[int]) -> None:
-        for desk in self._desks:
-            if desk.line.master in ready:
-                self._listen(desk)
-        now = time.monotonic()
-        for desk in self._desks:
-            if 0.0 <= desk.poll_at_s <= now:
-                desk.poll_at_s = -1.0
-                self._report(desk, now)
-            desk.line.pump(time.monotonic())
-
     def _measure(self, at_s: float) -> None:
         """One measuring cycle: every line that streams sends it, if its turn has come."""
-        period_s = 1.0 / self._rate_hz
         for desk in self._desks:
             if desk.streaming and self._cycle % desk.every == 0:
-                if desk.line.free_at_s - at_s > desk.every * period_s:
-                    self.skipped += 1
-                else:
-                    self._report(desk, at_s)
+                self._stream(desk, at_s, desk.every / self._rate_hz)
 
-    def _report(self, desk: Desk, at_s: float) -> None:
+    @property
+    def _range_inch(self) -> float:
+        return 144.0 if self.rig.erc else 72.0 if self._scaling else 36.0
+
+    def _report(self, line: SimulatedLine, at_s: float) -> None:
         """The records of the birds of a line, at a time."""
+        assert isinstance(line, _BirdLine)
         if not self._configured or time.monotonic() - self._configured_s < self.rig.quiet_s:
-            self._error, self._error_unit = 9, desk.unit
+            self._error, self._error_unit = 9, line.unit
             return
         positions, orientations = self._poses(at_s)
-        addresses = self._addresses if self._group else (desk.unit,)
-        for address in addresses:
+        scaling = Scaling(self._range_inch, self.rig.conjugated)
+        for address in self._addresses if self._group else (line.unit,):
             if address not in self._addresses:
                 continue
-            index, bird = self._addresses.index(address), self._birds[address]
-            scaling = Scaling(self._range_inch, self.rig.conjugated)
-            words = words_of_pose(positions[index], orientations[index], bird.form, scaling)
-            self._send(desk, address, words, at_s)
+            index = self._addresses.index(address)
+            pose = positions[index], orientations[index]
+            words = words_of_pose(*pose, self._forms[address], scaling)
+            data = out = encode_record(words, address=address if self._group else None)
+            share = self.faults.wrong_address_share
+            wrong = self._group and bool(share) and line.random.random() < share
+            if wrong:
+                out = encode_record(words, address=WRONG_ADDRESS)
+            intact = line.send(out, at_s) and not wrong
+            self._sent(address, data, intact=intact)
 
-    def _send(self, desk: Desk, address: int, words: tuple[int, ...], at_s: float) -> None:
-        shown = address if self._group else None
-        data = encode_record(words, address=shown)
-        wrong = self._group and self._is_wrong(desk)
-        out = encode_record(words, address=WRONG_ADDRESS) if wrong else data
-        intact = desk.line.send(out, at_s) and not wrong
-        if self._log is not None:
-            self._log.append(Sent(address, data, intact))
-
-    def _is_wrong(self, desk: Desk) -> bool:
-        share = self.faults.wrong_address_share
-        return bool(share) and desk.line.chance() < share
-
-    def _listen(self, desk: Desk) -> None:
-        try:
-            data = desk.line.receive()
-        except OSError:
-            return
-        now = time.monotonic()
+    def _listen(self, line: SimulatedLine) -> None:
+        assert isinstance(line, _BirdLine)
+        data, now = line.receive(), time.monotonic()
         if data and self._configured_s > 0.0 and now - self._configured_s < self.rig.quiet_s:
             self._configured, self._error, self._error_unit = False, 13, self._units
-        desk.commands += data
-        while (size := command_size(desk.commands)) and len(desk.commands) >= size:
-            command = bytes(desk.commands[:size])
-            del desk.commands[:size]
-            self._obey(desk, command, now)
+        while (size := _command_size(line.commands)) and len(line.commands) >= size:
+            command = bytes(line.commands[:size])
+            del line.commands[:size]
+            self._obey(line, command, now)
             self._heard_s = now
 
-    def _obey(self, desk: Desk, command: bytes, now: float) -> None:
+    def _obey(self, desk: _BirdLine, command: bytes, now: float) -> None:
         code, target = command[0], desk.target or desk.unit
         desk.target = 0
         if PREFIX < code < PREFIX + 15:
             desk.target = code - PREFIX
+        elif code == POINT and desk.streaming:  # a stream ends instead
+            desk.streaming = False
+            desk.forget()
         elif code == POINT:
-            self._poll(desk, now)
+            desk.poll_at_s = now + self.faults.reply_delay_s
         elif code == STREAM:
             desk.streaming = True
         elif code in EVERY_BY_COMMAND:
             desk.every = EVERY_BY_COMMAND[code]
-        elif code in BY_COMMAND and target in self._birds:
-            self._birds[target].form = BY_COMMAND[code]
-        elif code == HEMISPHERE and target in self._birds:
-            self._birds[target].hemisphere = command[1:]
+        elif code in BY_COMMAND and target in self._forms:
+            self._forms[target] = BY_COMMAND[code]
+        elif code == HEMISPHERE and target in self._forms:
+            self._hemispheres[target] = command[1:]
         elif code == EXAMINE:
             self._examine(desk, command[1])
         elif code == CHANGE and command[1] in SIZES:
@@ -1055,30 +830,22 @@ class FlockSimulator(Simulator):
         elif code not in (RUN, FBB_RESET, NEXT_TRANSMITTER):
             self._error, self._error_unit = 6, target
 
-    def _poll(self, desk: Desk, now: float) -> None:
-        """Answer, soon; a stream ends instead."""
-        if desk.streaming:
-            desk.streaming = False
-            desk.line.forget()
-        else:
-            desk.poll_at_s = now + self.faults.reply_delay_s
-
     def _change(self, parameter: int, value: int, now: float) -> None:
         if parameter == RATE and value:
             self._rate_hz = value / RATE_UNIT
         elif parameter == GROUP_MODE:
             self._group = bool(value)
         elif parameter == SCALING:
-            self._range_inch = range_inch(self.rig, value)
+            self._scaling = value
         elif parameter == AUTO_CONFIG:
             self._auto_configure(value, now)
 
     def _auto_configure(self, units: int, now: float) -> None:
         """Find the other units, if the line was idle before and all that were named are there."""
-        there = [each for each in range(1, units + 1) if self._is_there(each)]
         absent = [each for each in range(1, units + 1) if not self._is_there(each)]
         self._configured_s = now
-        self._configured = now - self._heard_s >= self.rig.quiet_s and len(there) == self._units
+        idle = now - self._heard_s >= self.rig.quiet_s
+        self._configured = idle and units - len(absent) == self._units
         if absent:
             self._error, self._error_unit = 13, absent[0]
         elif not self._configured:
@@ -1089,34 +856,40 @@ class FlockSimulator(Simulator):
     def _is_there(self, unit: int) -> bool:
         return unit <= self._units and unit not in self.rig.missing
 
-    def _examine(self, desk: Desk, parameter: int) -> None:
-        model = b"6DERC     " if self.rig.erc else b"6DFOB     "
+    def _examine(self, desk: _BirdLine, parameter: int) -> None:
+        """Answer with a parameter's value: master, initialised, error, running, streaming ..."""
+        bits = (desk.unit == 1) << 15 | self._configured << 14 | bool(self._error) << 13
+        bits |= self._configured << 12 | desk.streaming
         values = {
-            STATUS: self._status(desk),
+            STATUS: bits.to_bytes(2, "little"),
             FIRMWARE: b"\x03\x2f",
             CRYSTAL: (25).to_bytes(2, "little"),
             SCALING: int(self._range_inch > 36.0).to_bytes(2, "little"),
-            RATE: rate_word(self._rate_hz).to_bytes(2, "little"),
+            RATE: round(self._rate_hz * RATE_UNIT).to_bytes(2, "little"),
             ERROR: bytes([self._error]),
-            MODEL: model,
+            MODEL: b"6DERC     " if self.rig.erc else b"6DFOB     ",
             EXPANDED_ERROR: bytes([self._error_unit, 0]),
             LINE_FREQUENCY: b"\x3c",
-            HEMISPHERE_PARAMETER: self._birds[desk.unit].hemisphere,
+            HEMISPHERE_PARAMETER: self._hemispheres[desk.unit],
             GROUP_MODE: bytes([self._group]),
             FLOCK_STATUS: bytes(map(self._unit_bits, range(1, 15))),
         }
         if parameter == ERROR:
             self._error = 0
         value = values.get(parameter, bytes(SIZES.get(parameter, 2)))
-        desk.line.send(value, time.monotonic())
-
-    def _status(self, desk: Desk) -> bytes:
-        """Master, initialised, error, running, and whether it streams."""
-        bits = (desk.unit == 1) << 15 | self._configured << 14 | bool(self._error) << 13
-        return (bits | self._configured << 12 | desk.streaming).to_bytes(2, "little")
+        desk.send(value, time.monotonic())
 
     def _unit_bits(self, unit: int) -> int:
         if not self._is_there(unit) or (unit > 1 and not self._configured):
             return 0
         kind = SENSOR if unit in self._addresses else ERC | 0x01
         return ACCESSIBLE | (RUNNING if self._configured else 0) | kind
+
+
+def _command_size(data: bytearray) -> int:
+    """Bytes of the command that some bytes begin; more than there are where it is cut off."""
+    if not data:
+        return 0
+    if data[0] == CHANGE:
+        return 2 + (SIZES.get(data[1], 0) if len(data) > 1 else 1)
+    return 1 + DATA_SIZES.get(data[0], 0)

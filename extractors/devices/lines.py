@@ -1,14 +1,30 @@
-"""Serial ports and network connections as the drivers need them."""
+"""Serial ports and network connections as the drivers need them; only here pyserial is known."""
 
 import select
 import socket
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import serial
 from serial.tools.list_ports import comports
 
 from capar.model.errors import DeviceError
 from extractors.devices.tracker import DeviceLostError
+
+BITS = 10
+"""Bits of a byte on an 8N1 line: start, eight of data, stop."""
+
+BAUDS = (2400, 4800, 9600, 19200, 38400, 57600, 115200)
+"""Speeds of the trackers' serial lines [bits a second]."""
+
+RESET_S = 1.0
+"""How long RTS is held to reset a Flock of Birds [s]."""
+
+CONNECT_S = 3.0
+LARGEST = 65536
+RECEIVED = 1 << 20
+"""Bytes of datagrams that may wait while this computer is busy, as far as its system allows."""
 
 
 def _failures() -> tuple[type[Exception], ...]:
@@ -22,12 +38,10 @@ def _failures() -> tuple[type[Exception], ...]:
 
 
 FAILURES = _failures()
-RESET_S = 1.0
-"""How long RTS is held to reset a Flock of Birds [s]."""
 
 
 class SerialLine:
-    """An 8N1 port without flow control, whose failures are errors of ours.
+    """An 8N1 port without flow control; where it is gone, its methods raise ``DeviceLostError``.
 
     Args:
         port: The device file, or the port's name.
@@ -35,7 +49,7 @@ class SerialLine:
     """
 
     def __init__(self, port: str, baud: int) -> None:
-        self._port_name = port
+        self._name = port
         self._port = serial.Serial()
         self._port.port = port
         self._port.baudrate = baud
@@ -43,6 +57,13 @@ class SerialLine:
         self._port.write_timeout = 1.0
         # To open a port asserts RTS unless it is cleared before, which resets a Flock of Birds.
         self._port.rts = False
+
+    @contextmanager
+    def _present(self) -> Iterator[None]:
+        try:
+            yield
+        except FAILURES as error:
+            raise DeviceLostError(f"{self._name} is gone ({error})") from None
 
     def open(self) -> None:
         """Open the port; what it had received before is dropped.
@@ -54,54 +75,32 @@ class SerialLine:
             self._port.open()
         except FAILURES as error:
             raise DeviceError(
-                f"cannot open {self._port_name}: {error}. Is the device plugged in, and may this "
+                f"cannot open {self._name}: {error}. Is the device plugged in, and may this "
                 "user open it (group dialout)?"
             ) from None
 
     def read(self, timeout_s: float) -> bytes:
-        """What has arrived, after at most a wait for the first byte [s].
-
-        Raises:
-            DeviceLostError: The port is gone.
-        """
-        try:
+        """What has arrived, after at most a wait for the first byte [s]."""
+        with self._present():
             self._port.timeout = max(0.0, timeout_s)
             return self._port.read(self._port.in_waiting or 1)
-        except FAILURES as error:
-            raise DeviceLostError(f"{self._port_name} is gone ({error})") from None
 
     def read_exactly(self, count: int, timeout_s: float) -> bytes:
-        """A number of bytes, or fewer if they do not arrive in time.
-
-        Raises:
-            DeviceLostError: The port is gone.
-        """
+        """A number of bytes, or fewer if they do not arrive in time [s]."""
         deadline, out = time.monotonic() + timeout_s, b""
         while len(out) < count and time.monotonic() < deadline:
             out += self.read(min(0.05, deadline - time.monotonic()))
         return out
 
     def write(self, data: bytes) -> None:
-        """Send bytes.
-
-        Raises:
-            DeviceLostError: The port is gone.
-        """
-        try:
+        """Send bytes."""
+        with self._present():
             self._port.write(data)
-        except FAILURES as error:
-            raise DeviceLostError(f"{self._port_name} is gone ({error})") from None
 
     def drop_input(self) -> None:
-        """Forget what has arrived.
-
-        Raises:
-            DeviceLostError: The port is gone.
-        """
-        try:
+        """Forget what has arrived."""
+        with self._present():
             self._port.reset_input_buffer()
-        except FAILURES as error:
-            raise DeviceLostError(f"{self._port_name} is gone ({error})") from None
 
     def reset_device(self) -> bool:
         """Reset a device by RTS; whether the port has that line."""
@@ -126,14 +125,8 @@ def find_ports() -> dict[str, str]:
     return {each.device: each.description for each in sorted(comports())}
 
 
-CONNECT_S = 3.0
-LARGEST = 65536
-RECEIVED = 1 << 20
-"""Bytes of datagrams that may wait while this computer is busy, as far as its system allows."""
-
-
 class NetworkLine:
-    """A connection to a host, whose failures are errors of ours.
+    """A connection to a host; where it is gone, its methods raise ``DeviceLostError``.
 
     Args:
         host: Name or number.
@@ -158,31 +151,27 @@ class NetworkLine:
                 self._socket = socket.create_connection(self._to, timeout=CONNECT_S)
                 self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             else:
-                self._socket = self._datagrams()
+                family, kind, *_, to = socket.getaddrinfo(*self._to, type=socket.SOCK_DGRAM)[0]
+                self._socket = socket.socket(family, kind)
+                self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVED)
+                self._socket.connect(to)
         except OSError as error:
             raise DeviceError(
                 f"cannot reach {self._where}: {error}. Is the server on, and the name right?"
             ) from None
 
-    def _datagrams(self) -> socket.socket:
-        family, kind, *_, to = socket.getaddrinfo(*self._to, type=socket.SOCK_DGRAM)[0]
-        out = socket.socket(family, kind)
-        out.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVED)
-        out.connect(to)
-        return out
-
-    def read(self, timeout_s: float) -> bytes:
-        """What has arrived, or one datagram, after at most a wait [s]; empty if nothing has.
-
-        Raises:
-            DeviceLostError: The connection is gone.
-        """
+    def _opened(self) -> socket.socket:
         if self._socket is None:
             raise DeviceLostError(f"{self._where} is closed")
+        return self._socket
+
+    def read(self, timeout_s: float) -> bytes:
+        """What has arrived, or one datagram, after at most a wait [s]; empty if nothing has."""
+        opened = self._opened()
         try:
-            if not select.select([self._socket], [], [], max(0.0, timeout_s))[0]:
+            if not select.select([opened], [], [], max(0.0, timeout_s))[0]:
                 return b""
-            data = self._socket.recv(LARGEST)
+            data = opened.recv(LARGEST)
         except (OSError, ValueError) as error:
             raise DeviceLostError(f"{self._where} is gone ({error})") from None
         if not data and self._is_stream:
@@ -190,15 +179,9 @@ class NetworkLine:
         return data
 
     def write(self, data: bytes) -> None:
-        """Send bytes.
-
-        Raises:
-            DeviceLostError: The connection is gone.
-        """
-        if self._socket is None:
-            raise DeviceLostError(f"{self._where} is closed")
+        """Send bytes."""
         try:
-            self._socket.sendall(data)
+            self._opened().sendall(data)
         except OSError as error:
             raise DeviceLostError(f"{self._where} is gone ({error})") from None
 

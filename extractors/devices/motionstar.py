@@ -1,4 +1,11 @@
-"""Ascension MotionStar by its Ethernet server: packets, driver and simulator."""
+"""Ascension MotionStar by its Ethernet server: BirdNet packets (protocol 3), driver and simulator.
+
+All numbers are big-endian. Uncertain without the device, and so switches: the sign of the
+quaternion (``quaternion``) and the divisor of words (``divisor``). Header times are passed on as
+the device's, though it is not certain whether their milliseconds are a time or an interval. Packets
+are counted by their sequence numbers; a server that leaves them as they are loses packets unseen,
+which is reported.
+"""
 
 import random
 import socket
@@ -8,7 +15,6 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import Any
 
 from capar.model.errors import DeviceError
 from extractors.devices.bird_formats import (
@@ -29,7 +35,7 @@ from extractors.devices.flock import (
     error_text,
 )
 from extractors.devices.lines import NetworkLine
-from extractors.devices.simulator import MotionSource, Simulator
+from extractors.devices.simulator import MotionSource, ServerSimulator
 from extractors.devices.tracker import (
     Address,
     Description,
@@ -51,12 +57,10 @@ BUTTONS = 0x80
 
 
 class Kind(IntEnum):
-    """Packet types; a response is what its command asks for."""
+    """Types of commands, of data, and of answers to what is no command."""
 
     WAKE_UP = 10
     SHUT_DOWN = 11
-    WAKE_UP_DONE = 20
-    SHUT_DOWN_DONE = 21
     ILLEGAL = 40
     UNKNOWN = 50
     GET_STATUS = 101
@@ -65,25 +69,15 @@ class Kind(IntEnum):
     RUN_CONTINUOUS = 104
     STOP_DATA = 105
     SEND_DATA = 106
-    STATUS = 201
-    SETUP_DONE = 202
-    SINGLE_SHOT_DONE = 203
-    RUN_CONTINUOUS_DONE = 204
-    STOP_DATA_DONE = 205
-    SEND_DATA_DONE = 206
     DATA = 210
 
 
 RESPONSES = {
-    Kind.WAKE_UP: Kind.WAKE_UP_DONE,
-    Kind.SHUT_DOWN: Kind.SHUT_DOWN_DONE,
-    Kind.GET_STATUS: Kind.STATUS,
-    Kind.SEND_SETUP: Kind.SETUP_DONE,
-    Kind.SINGLE_SHOT: Kind.SINGLE_SHOT_DONE,
-    Kind.RUN_CONTINUOUS: Kind.RUN_CONTINUOUS_DONE,
-    Kind.STOP_DATA: Kind.STOP_DATA_DONE,
-    Kind.SEND_DATA: Kind.SEND_DATA_DONE,
+    kind: kind + (10 if kind < Kind.ILLEGAL else 100)
+    for kind in Kind
+    if kind < Kind.ILLEGAL or Kind.UNKNOWN < kind < Kind.DATA
 }
+"""The type of the response to each command."""
 
 
 class PacketError(DeviceError):
@@ -266,20 +260,13 @@ def decode_data(body: bytes) -> dict[int, tuple[BirdFormat, tuple[int, ...]]]:
     return out
 
 
-def unit_bits(*, sensor: bool) -> int:
-    """Bits of a running unit: a bird with a sensor, or the controller."""
-    return ACCESSIBLE | RUNNING | (SENSOR if sensor else ERC | 0x01)
-
-
-def reply(command: Packet, **changes: Any) -> Packet:
+def reply(command: Packet, *, body: bytes = b"") -> Packet:
     """The response to a command: its sequence number and address, and the type that answers it."""
-    kind = RESPONSES.get(Kind(command.kind), Kind.UNKNOWN) if command.kind in _KINDS else 50
-    base = Packet(kind, command.sequence, command.xtype)
-    return replace(base, **changes)
+    kind = RESPONSES.get(Kind(command.kind), Kind.UNKNOWN)
+    return Packet(kind, command.sequence, command.xtype, body)
 
 
 _BY_CODE = {each.code: each for each in FORMATS.values()}
-_KINDS = frozenset(int(each) for each in Kind)
 
 
 PORTS = {"tcp": 6000, "udp": 5000}
@@ -305,7 +292,7 @@ class MotionStarTracker(LiveTracker):
         super().__init__()
         transport = address.choice("transport", PORTS, "tcp")
         self._is_stream = transport == "tcp"
-        self._host, self._port = address.host_port(PORTS[transport])
+        self._host, self._port = address.host_port(address.place, PORTS[transport])
         self._rate_hz = address.number("rate", 103.3, low=1.0, high=MOST_HZ)
         self._every = int(address.choice("every", map(str, EVERY), "1"))
         self._form = FORMATS[address.choice("format", FORMATS, "pos_quat")]
@@ -517,7 +504,7 @@ class SentPacket:
     intact: bool
 
 
-class MotionStarSimulator(Simulator):
+class MotionStarSimulator(ServerSimulator):
     """A server with a controller as unit 1, and one bird a sensor of the motion from 2 on.
 
     Args:
@@ -534,67 +521,53 @@ class MotionStarSimulator(Simulator):
         log: list[SentPacket] | None = None,
         port: int = 0,
     ) -> None:
-        super().__init__(motion, RATE_HZ)
-        self.port = port
+        super().__init__(motion, RATE_HZ, port)
         self._faults = faults or ServerFaults()
         self._log = log
         self._random = random.Random(self._faults.seed)
         self._birds = tuple(range(2, 2 + len(motion.sensors)))
-        self._listening: socket.socket | None = None
         self._datagrams: socket.socket | None = None
-        self._client: socket.socket | None = None
         self._peer: tuple[str, int] | None = None
         self._forget()
 
     def _forget(self) -> None:
         self._setups = {
-            each: BirdStatus(each, FORMATS["pos_ang"], RANGE_INCH) for each in self._birds
+            bird: BirdStatus(bird, FORMATS["pos_ang"], RANGE_INCH) for bird in self._birds
         }
         self._rate_hz, self._sending, self._sequence = RATE_HZ, False, 0
         self._buffer = bytearray()
 
-    @property
-    def place(self) -> str:
-        """The place in a device address."""
-        return f"127.0.0.1:{self.port}"
-
     def _plug(self) -> None:
         self._forget()
-        self._listening = socket.create_server(("127.0.0.1", self.port))
-        self.port = self._listening.getsockname()[1]
+        super()._plug()
         self._datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._datagrams.bind(("127.0.0.1", self.port))
 
     def _unplug(self) -> None:
-        for connection in (self._listening, self._datagrams, self._client):
-            if connection is not None:
-                connection.close()
-        self._listening = self._datagrams = self._client = self._peer = None
+        super()._unplug()
+        if self._datagrams is not None:
+            self._datagrams.close()
+        self._datagrams = self._peer = None
+
+    def _drop(self) -> None:
+        super()._drop()
         self._sending = False
 
     def _handles(self) -> list[int]:
-        every = (self._listening, self._datagrams, self._client)
-        return [each.fileno() for each in every if each is not None]
+        return super()._handles() + ([self._datagrams.fileno()] if self._datagrams else [])
 
     def _attend(self, ready: set[int]) -> None:
+        super()._attend(ready)
         with suppress(OSError):
-            if self._listening is not None and self._listening.fileno() in ready:
-                self._client, _ = self._listening.accept()
-                self._client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-                self._peer = None
-                self._buffer.clear()
-            elif self._client is not None and self._client.fileno() in ready:
-                self._hear(self._client)
             if self._datagrams is not None and self._datagrams.fileno() in ready:
                 data, self._peer = self._datagrams.recvfrom(65536)
                 self._obey_all(bytearray(data))
 
-    def _hear(self, client: socket.socket) -> None:
-        data = client.recv(65536)
-        if not data:
-            client.close()
-            self._client, self._sending = None, False
-            return
+    def _welcome(self) -> None:
+        self._peer = None
+        self._buffer.clear()
+
+    def _hear(self, data: bytes) -> None:
         self._buffer += data
         self._obey_all(self._buffer)
 
@@ -605,11 +578,11 @@ class MotionStarSimulator(Simulator):
                 self._send(self._obey(found[0]))
 
     def _send(self, packet: Packet) -> None:
-        with suppress(OSError):
-            if self._peer is not None and self._datagrams is not None:
+        if self._peer is not None and self._datagrams is not None:
+            with suppress(OSError):
                 self._datagrams.sendto(packet.encode(), self._peer)
-            elif self._client is not None:
-                self._client.sendall(packet.encode())
+        else:
+            self._put(packet.encode())
 
     def _obey(self, packet: Packet) -> Packet:
         """The response to a command."""
@@ -624,15 +597,15 @@ class MotionStarSimulator(Simulator):
             self._sending = packet.kind == Kind.RUN_CONTINUOUS
             self._sequence = packet.sequence
         if packet.kind == Kind.SINGLE_SHOT:
-            return reply(packet, body=self._data(time.monotonic()))
+            return reply(packet, body=self._body(self._words(time.monotonic())))
         return reply(packet)
 
     def _status(self, bird: int) -> bytes:
         if bird:
             return self._setups[bird].encode()
         units = (
-            unit_bits(sensor=False),
-            *[unit_bits(sensor=True)] * len(self._birds),
+            ACCESSIBLE | RUNNING | ERC | 0x01,
+            *[ACCESSIBLE | RUNNING | SENSOR] * len(self._birds),
         )
         flags = 0x0C | 0x80 * self._sending | 0x40 * bool(self._faults.error)
         return SystemStatus(self._rate_hz, units, 1, flags, self._faults.error).encode()
@@ -655,21 +628,19 @@ class MotionStarSimulator(Simulator):
             for bird, position, turn in zip(self._birds, positions, orientations, strict=True)
         }
 
-    def _data(self, at_s: float) -> bytes:
-        words = self._words(at_s)
+    def _body(self, words: dict[int, tuple[int, ...]]) -> bytes:
         return encode_data({b: (self._setups[b].form, w) for b, w in words.items()})
 
     def _measure(self, at_s: float) -> None:
         every = self._setups[self._birds[0]].report_every
         if not self._sending or self._cycle % max(1, every):
             return
-        self._sequence = (self._sequence + self._faults.numbered) % 0x10000
+        self._sequence = (self._sequence + self._faults.numbered) % SEQUENCES
         words = self._words(at_s)
-        body = encode_data({b: (self._setups[b].form, w) for b, w in words.items()})
         intact = self._random.random() >= self._faults.lost_share
         if self._log is not None:
             self._log.append(SentPacket(words, intact))
         if intact:
             since_s = at_s - self._start_s
             seconds, milli = int(since_s), int(since_s % 1.0 * 1000.0)
-            self._send(Packet(Kind.DATA, self._sequence, 0, body, seconds, milli))
+            self._send(Packet(Kind.DATA, self._sequence, 0, self._body(words), seconds, milli))

@@ -1,16 +1,17 @@
-"""What the simulated trackers share: a motion, a clock in a thread, and a pseudo-terminal."""
+"""What simulated trackers share: a motion, a clock in a thread, and what programs connect to."""
 
 import os
 import pty
 import random
 import select
+import socket
 import tempfile
 import threading
 import time
 import tty
 from abc import ABC, abstractmethod
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol, Self
 
@@ -20,6 +21,17 @@ from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Capture
 from capar.model.errors import DeviceError, UnknownNameError
+from extractors.devices.lines import BITS
+
+IDLE_S = 0.02
+"""Longest wait for anything [s]."""
+
+TICK_S = 0.002
+"""How often a serial line that has something to send is attended to [s]."""
+
+HELD_UP_S = 0.25
+"""A simulator that did not run for longer was held up by its computer [s]: its clock stood still,
+too. Else it would send at once what a line carries in all that time, and ports overrun by it."""
 
 Poses = tuple[Float[np.ndarray, "sensors 3"], Float[np.ndarray, "sensors 4"]]
 
@@ -73,24 +85,20 @@ class CapturedMotion:
         for name in names:
             if name not in capture.bodies:
                 raise UnknownNameError("body", name, capture.bodies, where=capture.name)
-        self._names = names or tuple(capture.bodies)
+        self.sensors = names or tuple(capture.bodies)
         self._times = capture.times - capture.times[0]
-        streams = [capture.bodies[name].stream for name in self._names]
-        for name, stream in zip(self._names, streams, strict=True):
-            if stream.lost.all():
+        positions, orientations = [], []
+        for name in self.sensors:
+            stream = capture.bodies[name].stream
+            seen = np.flatnonzero(~stream.lost)
+            if not seen.size:
                 raise DeviceError(f"{name} is lost throughout {capture.name}; leave it out")
-        seen = [_last_seen(stream.lost) for stream in streams]
-        self._positions = np.stack(
-            [each.positions[at] for each, at in zip(streams, seen, strict=True)], axis=1
-        )
-        self._orientations = np.stack(
-            [each.orientations[at] for each, at in zip(streams, seen, strict=True)], axis=1
-        )
-
-    @property
-    def sensors(self) -> tuple[str, ...]:
-        """The bodies' names."""
-        return self._names
+            last = np.searchsorted(seen, np.arange(len(stream.times)), side="right") - 1
+            at = seen[np.maximum(last, 0)]
+            positions.append(stream.positions[at])
+            orientations.append(stream.orientations[at])
+        self._positions = np.stack(positions, axis=1)
+        self._orientations = np.stack(orientations, axis=1)
 
     def poses(self, time_s: float) -> Poses:
         """Positions [m] and orientations (w x y z), z up, of the last frame before a time [s]."""
@@ -98,20 +106,6 @@ class CapturedMotion:
         within = time_s % (self._times[-1] + step_s)
         frame = int(np.searchsorted(self._times, within, side="right")) - 1
         return self._positions[frame], self._orientations[frame]
-
-
-def _last_seen(lost: np.ndarray) -> np.ndarray:
-    """For each frame the last one that was not lost; before the first, the first."""
-    seen = np.flatnonzero(~lost)
-    return seen[np.maximum(np.searchsorted(seen, np.arange(len(lost)), side="right") - 1, 0)]
-
-
-IDLE_S = 0.02
-"""Longest wait for anything [s]."""
-
-HELD_UP_S = 0.25
-"""A simulator that did not run for longer was held up by its computer [s]: its clock stood still,
-too. Else it would send at once what a line carries in all that time, and ports overrun by it."""
 
 
 class Simulator(ABC):
@@ -150,7 +144,7 @@ class Simulator(ABC):
         """End, and let go of lines and ports."""
         self._running = False
         self._thread.join()
-        self._remove()
+        self._unplug()
 
     def unplug(self) -> None:
         """Pull all plugs."""
@@ -183,7 +177,11 @@ class Simulator(ABC):
             with self._lock:
                 self._stand_still(time.monotonic())
                 self._attend(set(ready).intersection(self._handles()))
-                self._catch_up()
+                now = time.monotonic()
+                while self._next_s <= now:
+                    self._measure(self._next_s)
+                    self._cycle += 1
+                    self._next_s += 1.0 / self._rate_hz
 
     def _stand_still(self, now_s: float) -> None:
         """Put clocks back by the time in which the simulator was held up."""
@@ -193,22 +191,11 @@ class Simulator(ABC):
             self._next_s += held_up_s
             self._hold_lines(held_up_s)
 
-    def _catch_up(self) -> None:
-        """Every measuring cycle that is due."""
-        now = time.monotonic()
-        while self._next_s <= now:
-            self._measure(self._next_s)
-            self._cycle += 1
-            self._next_s += 1.0 / self._rate_hz
-
     def _poses(self, at_s: float) -> Poses:
         return self._motion.poses(at_s - self._start_s)
 
     def _wait_s(self) -> float:
         return min(IDLE_S, max(0.0, self._next_s - time.monotonic()))
-
-    def _remove(self) -> None:
-        self._unplug()
 
     def _hold_lines(self, held_up_s: float) -> None:  # noqa: B027  # networks have no speed
         """Carry nothing for so long [s]."""
@@ -234,13 +221,9 @@ class Simulator(ABC):
         """Send what is due at this time of the monotonic clock [s]."""
 
 
-BITS = 10
-"""Bits of a byte on an 8N1 line."""
-
-
 @dataclass(frozen=True)
 class Faults:
-    """What goes wrong with what the device sends."""
+    """What goes wrong with what a device sends by a serial line."""
 
     lost_share: float = 0.0
     """Share of the bytes that are lost."""
@@ -269,32 +252,38 @@ class Sent:
     """Whether all of them went out as they were."""
 
 
-@dataclass
 class SimulatedLine:
-    """The device's end of a line; the other end is a device file whose path does not change."""
+    """The device's end of a serial line with a speed and faults; the other is a pseudo-terminal.
 
-    baud: int
-    faults: Faults = field(default_factory=Faults)
-    master: int = -1
-    _slave: int = -1
-    _queue: bytearray = field(default_factory=bytearray)
-    _sent_until_s: float = 0.0
+    Args:
+        baud: Its speed [bits a second].
+        faults: What goes wrong with the bytes.
+    """
 
-    def __post_init__(self) -> None:
-        """Make the folder of the device file."""
+    def __init__(self, baud: int, faults: Faults) -> None:
+        self.faults = faults
+        self.byte_s = BITS / baud
+        """Time of a byte on the line [s]."""
+
+        self.handle = -1
+        self._slave = -1
+        self._queue = bytearray()
+        self._sent_until_s = 0.0
         self._folder = tempfile.TemporaryDirectory(prefix="capar-simulated-")
         self.path = str(Path(self._folder.name) / "port")
-        self._random = random.Random(self.faults.seed)
+        """The device file; it stays the same when the plug is pulled."""
 
-    @property
-    def byte_s(self) -> float:
-        """Time of a byte on the line [s]."""
-        return BITS / self.baud
+        self.random = random.Random(faults.seed)
+        self.commands = bytearray()
+        """What the other end has sent, as far as it was not obeyed."""
+
+        self.poll_at_s = -1.0
+        """When a poll is to be answered [s]; negative where none is."""
 
     @property
     def busy(self) -> bool:
-        """Whether something is queued."""
-        return bool(self._queue)
+        """Whether something is queued, or a poll is to be answered."""
+        return bool(self._queue) or self.poll_at_s >= 0.0
 
     @property
     def free_at_s(self) -> float:
@@ -303,43 +292,42 @@ class SimulatedLine:
 
     def plug(self) -> None:
         """Make the device file, raw from the start."""
-        self.master, self._slave = pty.openpty()
+        self.handle, self._slave = pty.openpty()
         tty.setraw(self._slave)
-        os.set_blocking(self.master, False)
+        os.set_blocking(self.handle, False)
         Path(self.path).symlink_to(os.ttyname(self._slave))
         self._queue.clear()
 
     def unplug(self) -> None:
         """Pull the plug: the other end fails, and the device file is gone."""
         Path(self.path).unlink(missing_ok=True)
-        for handle in (self.master, self._slave):
+        for handle in (self.handle, self._slave):
             if handle >= 0:
                 os.close(handle)
-        self.master = self._slave = -1
+        self.handle = self._slave = -1
         self._queue.clear()
-
-    def remove(self) -> None:
-        """Unplug, and remove what was made."""
-        self.unplug()
-        self._folder.cleanup()
+        self.commands.clear()
 
     def receive(self) -> bytes:
-        """What the other end has sent."""
+        """What the other end has sent; it is also added to ``commands``."""
         with suppress(OSError):
-            return os.read(self.master, 4096)
+            data = os.read(self.handle, 4096)
+            self.commands += data
+            return data
         return b""
 
     def send(self, data: bytes, at_s: float) -> bool:
         """Queue bytes that the device has at a moment [s]; whether all go out as they are."""
         if not self._queue:
             self._sent_until_s = max(self._sent_until_s, at_s)
-        spoilt = bytes(_spoil(data, self.faults, self._random))
+        spoilt = bytearray()
+        for byte in data:
+            if self.random.random() < self.faults.lost_share:
+                continue
+            garbled = self.random.random() < self.faults.garbled_share
+            spoilt.append(byte ^ 1 << self.random.randrange(8) if garbled else byte)
         self._queue += spoilt
-        return spoilt == data
-
-    def chance(self) -> float:
-        """A random share, for faults of whole records."""
-        return self._random.random()
+        return bytes(spoilt) == data
 
     def pump(self, now_s: float) -> None:
         """Let out the bytes that the line's speed has carried by now."""
@@ -347,7 +335,7 @@ class SimulatedLine:
         if due <= 0:
             return
         try:
-            written = os.write(self.master, self._queue[:due])
+            written = os.write(self.handle, self._queue[:due])
         except OSError:  # nobody reads: what the port cannot hold is overrun
             written = due
         del self._queue[:written]
@@ -362,13 +350,155 @@ class SimulatedLine:
         self._queue.clear()
 
 
-def _spoil(data: bytes, faults: Faults, source: random.Random) -> list[int]:
-    if not faults.lost_share and not faults.garbled_share:
-        return list(data)
-    out = []
-    for byte in data:
-        if source.random() < faults.lost_share:
-            continue
-        garbled = source.random() < faults.garbled_share
-        out.append(byte ^ 1 << source.randrange(8) if garbled else byte)
-    return out
+class SerialSimulator(Simulator):
+    """A tracker on one or several simulated lines; a cycle for which one has no room is skipped.
+
+    Args:
+        motion: What is measured.
+        rate_hz: Measuring cycles a second.
+        lines: The lines.
+        log: Where every record that is sent is kept, if anywhere.
+    """
+
+    def __init__(
+        self,
+        motion: MotionSource,
+        rate_hz: float,
+        lines: list[SimulatedLine],
+        log: list[Sent] | None,
+    ) -> None:
+        super().__init__(motion, rate_hz)
+        self.skipped = 0
+        self._lines = lines
+        self._log = log
+
+    @property
+    def place(self) -> str:
+        """The device files, divided by commas."""
+        return ",".join(line.path for line in self._lines)
+
+    def stop(self) -> None:
+        """End, and remove the device files."""
+        super().stop()
+        for line in self._lines:
+            line._folder.cleanup()
+
+    def _plug(self) -> None:
+        self._power_up()
+        for line in self._lines:
+            line.plug()
+
+    def _unplug(self) -> None:
+        for line in self._lines:
+            line.unplug()
+
+    def _hold_lines(self, held_up_s: float) -> None:
+        for line in self._lines:
+            line.hold(held_up_s)
+
+    def _handles(self) -> list[int]:
+        return [line.handle for line in self._lines if line.handle >= 0]
+
+    def _wait_s(self) -> float:
+        return TICK_S if any(line.busy for line in self._lines) else super()._wait_s()
+
+    def _attend(self, ready: set[int]) -> None:
+        for line in self._lines:
+            if line.handle in ready:
+                self._listen(line)
+        now = time.monotonic()
+        for line in self._lines:
+            if 0.0 <= line.poll_at_s <= now:
+                line.poll_at_s = -1.0
+                self._report(line, now)
+            line.pump(time.monotonic())
+
+    def _stream(self, line: SimulatedLine, at_s: float, period_s: float) -> None:
+        """Report a cycle, if the line has room for it."""
+        if line.handle >= 0 and line.free_at_s - at_s > period_s:
+            self.skipped += 1
+        elif line.handle >= 0:
+            self._report(line, at_s)
+
+    def _sent(self, address: int, data: bytes, *, intact: bool) -> None:
+        if self._log is not None:
+            self._log.append(Sent(address, data, intact))
+
+    @abstractmethod
+    def _power_up(self) -> None:
+        """Forget all settings."""
+
+    @abstractmethod
+    def _listen(self, line: SimulatedLine) -> None:
+        """Obey what came by a line."""
+
+    @abstractmethod
+    def _report(self, line: SimulatedLine, at_s: float) -> None:
+        """Send the records of a line's sensors at a time [s]."""
+
+
+class ServerSimulator(Simulator):
+    """A server on loopback with one TCP client at a time.
+
+    Args:
+        motion: What is measured.
+        rate_hz: Measuring cycles a second.
+        port: TCP port; 0 takes a free one.
+    """
+
+    def __init__(self, motion: MotionSource, rate_hz: float, port: int) -> None:
+        super().__init__(motion, rate_hz)
+        self.port = port
+        self._listening: socket.socket | None = None
+        self._client: socket.socket | None = None
+
+    @property
+    def place(self) -> str:
+        """Host and port."""
+        return f"127.0.0.1:{self.port}"
+
+    def _plug(self) -> None:
+        self._listening = socket.create_server(("127.0.0.1", self.port))
+        self.port = self._listening.getsockname()[1]
+
+    def _unplug(self) -> None:
+        if self._listening is not None:
+            self._listening.close()
+        self._listening = None
+        self._drop()
+
+    def _drop(self) -> None:
+        """Let the client go."""
+        if self._client is not None:
+            self._client.close()
+        self._client = None
+
+    def _handles(self) -> list[int]:
+        return [each.fileno() for each in (self._listening, self._client) if each is not None]
+
+    def _attend(self, ready: set[int]) -> None:
+        with suppress(OSError):
+            if self._listening is not None and self._listening.fileno() in ready:
+                self._client, _ = self._listening.accept()
+                self._client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                self._welcome()
+            elif self._client is not None and self._client.fileno() in ready:
+                data = self._client.recv(65536)
+                if data:
+                    self._hear(data)
+                else:
+                    self._drop()
+
+    def _put(self, data: bytes) -> None:
+        """Send bytes to the client, if there is one."""
+        with suppress(OSError):
+            if self._client is not None:
+                self._client.sendall(data)
+
+    @abstractmethod
+    def _welcome(self) -> None:
+        """Begin with a client that has just connected."""
+
+    @abstractmethod
+    def _hear(self, data: bytes) -> None:
+        """Take what the client sent."""

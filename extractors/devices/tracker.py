@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Protocol, Self
+from typing import Self
 from urllib.parse import unquote
 
 import numpy as np
@@ -20,9 +20,140 @@ RETRY_S = 0.5
 POLL_S = 0.1
 """Longest wait for a device's next bytes before anything else is attended to [s]."""
 
+FLAGS = {"yes": True, "no": False}
+
 
 class DeviceLostError(DeviceError):
     """The connection broke off, or a device that was sending is silent."""
+
+
+@dataclass(frozen=True)
+class Address:
+    """A device address: a driver's name, where its device is, and options.
+
+    ``flock:/dev/ttyUSB0?birds=12&format=pos_quat&rate=51.65``
+    """
+
+    text: str
+    kind: str
+    place: str
+    options: Mapping[str, str]
+    _asked: set[str] = field(default_factory=set, repr=False, compare=False)
+
+    def text_of(self, name: str, default: str) -> str:
+        """An option as text."""
+        self._asked.add(name)
+        return self.options.get(name, default)
+
+    def choice(self, name: str, known: Iterable[str], default: str) -> str:
+        """An option that is one of some words.
+
+        Raises:
+            UnknownNameError: It is another.
+        """
+        given, names = self.text_of(name, default), list(known)
+        if given not in names:
+            raise UnknownNameError(name, given, names, where=self.text)
+        return given
+
+    def flag(self, name: str) -> bool:
+        """An option that is ``yes`` or, if it is not given, ``no``."""
+        return FLAGS[self.choice(name, FLAGS, "no")]
+
+    def number(self, name: str, default: float, *, low: float, high: float) -> float:
+        """An option that is a number within bounds, which belong to it.
+
+        Raises:
+            DeviceError: It is no number, or lies outside.
+        """
+        given = self.text_of(name, str(default))
+        try:
+            value = float(given)
+        except ValueError:
+            raise self.error(f"{name}={given} is no number") from None
+        if not low <= value <= high:
+            raise self.error(f"{name}={given}; it lies between {low:g} and {high:g}")
+        return value
+
+    def integer(self, name: str, default: int, *, low: int, high: int) -> int:
+        """An option that is a whole number within bounds, which belong to it.
+
+        Raises:
+            DeviceError: It is none, or lies outside.
+        """
+        value = self.number(name, default, low=low, high=high)
+        if value != int(value):
+            raise self.error(f"{name}={self.options[name]} is no whole number")
+        return int(value)
+
+    def names(self, default: Iterable[str]) -> tuple[str, ...]:
+        """The sensors' names: the option ``names``, as many as there are sensors.
+
+        Raises:
+            DeviceError: There are more or fewer, one is given twice, or it is no name.
+        """
+        usual = tuple(default)
+        given = tuple(self.text_of("names", ",".join(usual)).split(","))
+        if len(given) != len(usual):
+            raise self.error(f"names= lists {len(given)} names; there are {len(usual)} sensors")
+        for name in given:
+            if not NAME.fullmatch(name):
+                rule = "begin with a lower-case letter and hold letters, digits and underscores"
+                raise self.error(f"sensor name {name!r}: names {rule}")
+        if len(set(given)) < len(given):
+            raise self.error("names= lists a name twice")
+        return given
+
+    def host_port(self, place: str, port: int) -> tuple[str, int]:
+        """A place that is ``HOST`` or ``HOST:PORT``.
+
+        Raises:
+            DeviceError: It is neither.
+        """
+        host, colon, digits = place.rpartition(":")
+        if not colon:
+            return place, port
+        if not host or not digits.isascii() or not digits.isdigit() or not 0 < int(digits) < 65536:
+            raise self.error(f"{place!r} is no HOST or HOST:PORT")
+        return host, int(digits)
+
+    def close(self) -> None:
+        """Refuse options that nothing asked for.
+
+        Raises:
+            UnknownNameError: There is one.
+        """
+        for name in self.options:
+            if name not in self._asked:
+                raise UnknownNameError("option", name, self._asked, where=self.text)
+
+    def error(self, problem: str) -> DeviceError:
+        """An error that names this address."""
+        return DeviceError(f"{self.text}: {problem}")
+
+
+def parse_address(text: str) -> Address:
+    """The address that a text holds.
+
+    Raises:
+        DeviceError: It has no driver, no place, an option without a value, or one twice.
+    """
+    kind, colon, rest = text.partition(":")
+    place, _, query = rest.partition("?")
+    if not colon or not kind or not place:
+        raise DeviceError(
+            f"{text!r} is no device address; it is DRIVER:PLACE?OPTION=VALUE&..., "
+            "like flock:/dev/ttyUSB0?birds=2"
+        )
+    options: dict[str, str] = {}
+    for part in query.split("&") if query else ():
+        name, equals, value = part.partition("=")
+        if not equals or not name or not value:
+            raise DeviceError(f"{text}: option {part!r} is not of the form NAME=VALUE")
+        if name in options:
+            raise DeviceError(f"{text}: option {name!r} is given twice")
+        options[name] = unquote(value)
+    return Address(text, kind, place, options)
 
 
 @dataclass(frozen=True)
@@ -98,35 +229,8 @@ class Event:
     message: str
 
 
-class Tracker(Protocol):
-    """A source of live poses."""
-
-    counts: Counts
-    events: list[Event]
-    """What happened to the connection, oldest first."""
-
-    def open(self) -> None:
-        """Connect, and have the device send.
-
-        Raises:
-            DeviceError: It cannot be reached, or refuses; the message names the remedy.
-        """
-
-    def describe(self) -> Description:
-        """What the device is, and its sensors."""
-
-    def poll(self, timeout_s: float) -> list[Frame]:
-        """The frames that have come since the last call, after at most a wait [s].
-
-        A lost connection raises nothing: it is told in ``events`` and tried again.
-        """
-
-    def close(self) -> None:
-        """Have the device stop, and let go of it."""
-
-
 class LiveTracker(ABC):
-    """What the drivers share: connecting again, the frames one by one, closing at the end.
+    """A source of live poses, as a context manager; it connects again when the device goes away.
 
     A driver has ``_connect``, ``_disconnect`` and ``_read``; the latter raises
     ``DeviceLostError`` when the connection is gone.
@@ -135,6 +239,8 @@ class LiveTracker(ABC):
     def __init__(self) -> None:
         self.counts = Counts()
         self.events: list[Event] = []
+        """What happened to the connection, oldest first."""
+
         self._connected = False
         self._wanted = False
         self._retry_at = 0.0
@@ -159,14 +265,20 @@ class LiveTracker(ABC):
         """What the device is, and its sensors."""
 
     def poll(self, timeout_s: float) -> list[Frame]:
-        """The frames that have come since the last call, after at most a wait [s]."""
+        """The frames that have come since the last call, after at most a wait [s].
+
+        A lost connection raises nothing: it is reported in ``events``, and tried again.
+        """
         deadline = time.monotonic() + timeout_s
         if not self._connected and not self._reconnected(deadline):
             return []
         try:
             frames = self._read(max(0.0, deadline - time.monotonic()))
         except DeviceLostError as error:
-            self._lose(str(error))
+            self._connected = False
+            self._say(f"connection lost: {error}; trying to reach the device again")
+            self._disconnect()
+            self._retry_at = time.monotonic()
             return []
         self.counts.frames += len(frames)
         return frames
@@ -210,12 +322,6 @@ class LiveTracker(ABC):
     def _say(self, message: str) -> None:
         self.events.append(Event(time.monotonic(), message))
 
-    def _lose(self, why: str) -> None:
-        self._connected = False
-        self._say(f"connection lost: {why}; trying to reach the device again")
-        self._disconnect()
-        self._retry_at = time.monotonic()
-
     def _reconnected(self, deadline: float) -> bool:
         """Whether the device is reached again before a moment, trying now and then."""
         wait_s = self._retry_at - time.monotonic()
@@ -249,7 +355,7 @@ class LiveTracker(ABC):
         """The frames that come within a wait [s]."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class SensorReading:
     """One sensor's pose in one cycle."""
 
@@ -276,17 +382,13 @@ class CycleCounter:
     def __init__(self, sensors: int) -> None:
         self._sensors = sensors
         self._place = -1
-        self._is_started = False
+        self.started = False
+        """Whether a record was numbered."""
 
     def start(self, cycle: int, index: int) -> int:
         """Begin with a record of a sensor in a cycle."""
-        self._place, self._is_started = cycle * self._sensors + index, True
+        self._place, self.started = cycle * self._sensors + index, True
         return cycle
-
-    @property
-    def started(self) -> bool:
-        """Whether a record was numbered."""
-        return self._is_started
 
     def cycle_of(self, index: int, *, missed: int) -> int:
         """The cycle of the next record, of a sensor."""
@@ -298,13 +400,8 @@ class CycleCounter:
         return self.start(cycle, index)
 
 
-@dataclass
-class _Partial:
-    readings: dict[int, SensorReading] = field(default_factory=dict)
-
-
 class FrameCollector:
-    """Makes frames of the readings of numbered cycles.
+    """Makes frames of the readings of numbered cycles; what is missing is counted, not filled in.
 
     Args:
         sensors: How many there are.
@@ -321,13 +418,13 @@ class FrameCollector:
         self._counts = counts
         self._ahead = ahead
         self._counted = counted
-        self._partial: dict[int, _Partial] = {}
+        self._begun: dict[int, dict[int, SensorReading]] = {}
         self._given = -1
         self._newest = [-1] * sensors
 
     def start_after(self, cycle: int) -> None:
         """Count from a cycle on; nothing before it is missing."""
-        self._partial.clear()
+        self._begun.clear()
         self._newest = [cycle] * self._sensors
         self._given = cycle
 
@@ -337,25 +434,25 @@ class FrameCollector:
             self._counts.refused_records += 1
             return []
         self._counts.records += 1
-        self._partial.setdefault(cycle, _Partial()).readings[reading.index] = reading
+        self._begun.setdefault(cycle, {})[reading.index] = reading
         self._newest[reading.index] = max(cycle, self._newest[reading.index])
         passed = max(min(self._newest), max(self._newest) - self._ahead - 1)
         done = [
-            each
-            for each, partial in self._partial.items()
-            if len(partial.readings) == self._sensors or each <= passed
+            number
+            for number, readings in self._begun.items()
+            if len(readings) == self._sensors or number <= passed
         ]
         return self._give(max(done)) if done else []
 
     def flush(self) -> list[Frame]:
         """The frames that were begun."""
-        return self._give(max(self._partial)) if self._partial else []
+        return self._give(max(self._begun)) if self._begun else []
 
     def _give(self, last: int) -> list[Frame]:
         """Every frame begun up to a cycle."""
         out = []
-        for cycle in sorted(each for each in self._partial if each <= last):
-            readings = list(self._partial.pop(cycle).readings.values())
+        for cycle in sorted(number for number in self._begun if number <= last):
+            readings = list(self._begun.pop(cycle).values())
             missing = self._sensors - len(readings)
             self._counts.lost_records += missing + self._sensors * (cycle - self._given - 1)
             self._given = cycle
@@ -369,138 +466,5 @@ def frame_of(readings: Sequence[SensorReading], sensors: int, *, cycle: int | No
     for reading in readings:
         positions[reading.index] = reading.position
         orientations[reading.index] = reading.orientation
-    first = min(readings, key=lambda each: each.host_s)
+    first = min(readings, key=lambda reading: reading.host_s)
     return Frame(first.host_s, first.device_s, positions, orientations, cycle)
-
-
-FLAGS = {"yes": True, "no": False}
-
-
-@dataclass(frozen=True)
-class Address:
-    """A driver's name, where its device is, and options; each option is asked for once."""
-
-    text: str
-    kind: str
-    place: str
-    options: Mapping[str, str]
-    _asked: set[str] = field(default_factory=set, repr=False, compare=False)
-
-    def text_of(self, name: str, default: str) -> str:
-        """An option as text."""
-        self._asked.add(name)
-        return self.options.get(name, default)
-
-    def choice(self, name: str, known: Iterable[str], default: str) -> str:
-        """An option that is one of some words.
-
-        Raises:
-            UnknownNameError: It is another.
-        """
-        given, names = self.text_of(name, default), list(known)
-        if given not in names:
-            raise UnknownNameError(name, given, names, where=self.text)
-        return given
-
-    def flag(self, name: str, *, default: bool) -> bool:
-        """An option that is ``yes`` or ``no``.
-
-        Raises:
-            UnknownNameError: It is something else.
-        """
-        return FLAGS[self.choice(name, FLAGS, "yes" if default else "no")]
-
-    def number(self, name: str, default: float, *, low: float, high: float) -> float:
-        """An option that is a number within bounds, which belong to it.
-
-        Raises:
-            DeviceError: It is no number, or lies outside.
-        """
-        given = self.text_of(name, str(default))
-        try:
-            value = float(given)
-        except ValueError:
-            raise self.error(f"{name}={given} is no number") from None
-        if not low <= value <= high:
-            raise self.error(f"{name}={given}; it lies between {low:g} and {high:g}")
-        return value
-
-    def integer(self, name: str, default: int, *, low: int, high: int) -> int:
-        """An option that is a whole number within bounds, which belong to it.
-
-        Raises:
-            DeviceError: It is none, or lies outside.
-        """
-        value = self.number(name, default, low=low, high=high)
-        if value != int(value):
-            raise self.error(f"{name}={self.options[name]} is no whole number")
-        return int(value)
-
-    def names(self, default: Iterable[str]) -> tuple[str, ...]:
-        """The sensors' names: the option ``names``, as many as there are sensors.
-
-        Raises:
-            DeviceError: There are more or fewer, one is given twice, or it is no name.
-        """
-        usual = tuple(default)
-        given = tuple(self.text_of("names", ",".join(usual)).split(","))
-        if len(given) != len(usual):
-            raise self.error(f"names= lists {len(given)} names; there are {len(usual)} sensors")
-        for name in given:
-            if not NAME.fullmatch(name):
-                rule = "begin with a lower-case letter and hold letters, digits and underscores"
-                raise self.error(f"sensor name {name!r}: names {rule}")
-        if len(set(given)) < len(given):
-            raise self.error("names= lists a name twice")
-        return given
-
-    def host_port(self, port: int) -> tuple[str, int]:
-        """The place as ``HOST`` or ``HOST:PORT``.
-
-        Raises:
-            DeviceError: It is neither.
-        """
-        host, colon, digits = self.place.rpartition(":")
-        if not colon:
-            return self.place, port
-        if not host or not digits.isascii() or not digits.isdigit() or not 0 < int(digits) < 65536:
-            raise self.error(f"{self.place!r} is no HOST or HOST:PORT")
-        return host, int(digits)
-
-    def close(self) -> None:
-        """Refuse options that nothing asked for.
-
-        Raises:
-            UnknownNameError: There is one.
-        """
-        for name in self.options:
-            if name not in self._asked:
-                raise UnknownNameError("option", name, self._asked, where=self.text)
-
-    def error(self, problem: str) -> DeviceError:
-        """An error that names this address."""
-        return DeviceError(f"{self.text}: {problem}")
-
-
-def parse_address(text: str) -> Address:
-    """The address that a text holds.
-
-    Raises:
-        DeviceError: It has no driver, no place, an option without a value, or one twice.
-    """
-    kind, colon, rest = text.partition(":")
-    place, _, query = rest.partition("?")
-    if not colon or not kind or not place:
-        raise DeviceError(
-            f"{text!r} is no device address; it is DRIVER:PLACE?OPTION=VALUE&..., "
-            "like flock:/dev/ttyUSB0?birds=2"
-        )
-    options: dict[str, str] = {}
-    for part in query.split("&") if query else ():
-        name, equals, value = part.partition("=")
-        if not equals or not name or not value:
-            raise DeviceError(f"{text}: option {part!r} is not of the form NAME=VALUE")
-        if name in options:
-            raise DeviceError(f"{text}: option {name!r} is given twice")
-        options[name] = unquote(value)
-    return Address(text, kind, place, options)

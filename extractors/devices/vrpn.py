@@ -1,16 +1,14 @@
 """VRPN over TCP: messages, client and simulated server."""
 
-import socket
 import struct
 import time
-from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from extractors.devices.lines import NetworkLine
-from extractors.devices.simulator import MotionSource, Simulator
+from extractors.devices.simulator import MotionSource, ServerSimulator
 from extractors.devices.tracker import (
     Address,
     Description,
@@ -197,8 +195,7 @@ class VrpnTracker(LiveTracker):
         self._device, at, host = address.place.rpartition("@")
         if not at or not self._device:
             raise address.error("the place is TRACKER@HOST or TRACKER@HOST:PORT")
-        place = Address(address.text, address.kind, host, {})
-        self._line = NetworkLine(*place.host_port(PORT))
+        self._line = NetworkLine(*address.host_port(host, PORT))
         self._count = address.integer("sensors", 1, low=1, high=1000)
         self._names = address.names(f"sensor{index}" for index in range(self._count))
         self._up = UP[address.choice("up", UP, "z")]
@@ -309,8 +306,7 @@ SENDER = 0
 TYPES = {3: POSE_TYPE, 4: PING_TYPE, 5: PONG_TYPE}
 """The server's own numbers of its types."""
 
-POSE_VRPN_SIMULATOR, PING_VRPN_SIMULATOR, PONG_VRPN_SIMULATOR = TYPES
-PING_EVERY_S = 1.0
+SERVER_POSE, SERVER_PING, SERVER_PONG = TYPES
 
 
 @dataclass(frozen=True, slots=True)
@@ -321,7 +317,7 @@ class SentPose:
     stamp_s: float
 
 
-class VrpnSimulator(Simulator):
+class VrpnSimulator(ServerSimulator):
     """A server that sends every pose to whoever connects, and asks them whether they are there.
 
     Args:
@@ -338,11 +334,9 @@ class VrpnSimulator(Simulator):
         log: list[SentPose] | None = None,
         port: int = 0,
     ) -> None:
-        super().__init__(motion, rate_hz)
-        self.port, self.answers = port, 0
+        super().__init__(motion, rate_hz, port)
+        self.answers = 0
         self._log = log
-        self._listening: socket.socket | None = None
-        self._client: socket.socket | None = None
         self._ready = False
         self._asked_s = 0.0
         self._parser = MessageParser()
@@ -352,56 +346,33 @@ class VrpnSimulator(Simulator):
     @property
     def place(self) -> str:
         """The place in a device address."""
-        return f"Tracker0@127.0.0.1:{self.port}"
+        return f"Tracker0@{super().place}"
 
-    def _plug(self) -> None:
-        self._listening = socket.create_server(("127.0.0.1", self.port))
-        self.port = self._listening.getsockname()[1]
-
-    def _unplug(self) -> None:
-        for connection in (self._listening, self._client):
-            if connection is not None:
-                connection.close()
-        self._listening = self._client = None
+    def _drop(self) -> None:
+        super()._drop()
         self._ready = False
 
-    def _handles(self) -> list[int]:
-        return [each.fileno() for each in (self._listening, self._client) if each is not None]
-
     def _attend(self, ready: set[int]) -> None:
-        with suppress(OSError):
-            if self._listening is not None and self._listening.fileno() in ready:
-                self._welcome(self._listening.accept()[0])
-            elif self._client is not None and self._client.fileno() in ready:
-                self._hear(self._client)
-        if self._ready and time.monotonic() - self._asked_s > PING_EVERY_S:
+        super()._attend(ready)
+        if self._ready and time.monotonic() - self._asked_s > PING_S:
             self._asked_s = time.monotonic()
-            self._send(PING_VRPN_SIMULATOR, time.time())
+            self._send(SERVER_PING, time.time())
 
-    def _welcome(self, client: socket.socket) -> None:
-        self._client, self._ready, self._first = client, False, b""
-        client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    def _welcome(self) -> None:
+        self._ready, self._first = False, b""
         self._parser, self._their_types = MessageParser(), {}
-        client.sendall(cookie())
+        self._put(cookie())
 
-    def _hear(self, client: socket.socket) -> None:
-        data = client.recv(65536)
-        if not data:
-            self._drop(client)
-            return
+    def _hear(self, data: bytes) -> None:
         try:
             if not self._ready:
-                data = self._begin(client, data)
+                data = self._begin(data)
             for message in self._parser.feed(data) if self._ready else ():
                 self._take(message)
         except DeviceLostError:
-            self._drop(client)
+            self._drop()
 
-    def _drop(self, client: socket.socket) -> None:
-        client.close()
-        self._client, self._ready = None, False
-
-    def _begin(self, client: socket.socket, data: bytes) -> bytes:
+    def _begin(self, data: bytes) -> bytes:
         """Check the cookie, name sender and types, and give what came after the cookie."""
         self._first += data
         if len(self._first) < COOKIE_SIZE:
@@ -410,7 +381,7 @@ class VrpnSimulator(Simulator):
         names = [(SENDER_DESCRIPTION, SENDER, "Tracker0")]
         names += [(TYPE_DESCRIPTION, number, name) for number, name in TYPES.items()]
         for kind, number, name in names:
-            client.sendall(Message(0, 0, number, kind, encode_name(name)).encode())
+            self._put(Message(0, 0, number, kind, encode_name(name)).encode())
         self._ready, self._asked_s = True, 0.0
         return self._first[COOKIE_SIZE:]
 
@@ -418,15 +389,13 @@ class VrpnSimulator(Simulator):
         if message.type == TYPE_DESCRIPTION:
             self._their_types[message.sender] = decode_name(message.payload) or ""
         elif self._their_types.get(message.type) == PING_TYPE:
-            self._send(PONG_VRPN_SIMULATOR, time.time())
+            self._send(SERVER_PONG, time.time())
         elif self._their_types.get(message.type) == PONG_TYPE:
             self.answers += 1
 
     def _send(self, kind: int, stamp_s: float, payload: bytes = b"") -> None:
-        message = Message(int(stamp_s), int(stamp_s % 1.0 * 1e6), SENDER, kind, payload)
-        with suppress(OSError):
-            if self._client is not None:
-                self._client.sendall(message.encode())
+        stamp = int(stamp_s), int(stamp_s % 1.0 * 1e6)
+        self._put(Message(*stamp, SENDER, kind, payload).encode())
 
     def _measure(self, at_s: float) -> None:
         if not self._ready:
@@ -437,4 +406,4 @@ class VrpnSimulator(Simulator):
             pose = SensorPose(index, tuple(position.tolist()), quaternion)
             if self._log is not None:
                 self._log.append(SentPose(pose, at_s))
-            self._send(POSE_VRPN_SIMULATOR, at_s, pose.encode())
+            self._send(SERVER_POSE, at_s, pose.encode())

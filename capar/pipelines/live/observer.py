@@ -434,7 +434,7 @@ class LiveObserver:
             sources=(),
             notices=(),
         )
-        return describe(alone, words=self._words)
+        return describe(alone, words=self._words or ())
 
     def _frames(self, duration_s: float) -> int:
         return max(1, round(duration_s / self._step_s))

@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from capar.model.errors import DeviceError
 from extractors.devices.bird_formats import FORMATS
 from extractors.devices.flock import (
+    EXAMINE,
     MOST_HZ,
     SIZES,
     FlockPort,
     FlockRig,
     FlockSimulator,
     FlockTracker,
-    examine,
     flock_settings,
     line_limit_hz,
 )
@@ -71,9 +71,9 @@ def test_each_parameter_is_answered_in_as_many_bytes_as_its_value_has() -> None:
     with FlockSimulator(SmoothMotion(1), FlockRig(quiet_s=QUIET_S)) as simulator:
         address = parse_address(f"flock:{simulator.place}?{SETTLE}")
         port = FlockPort(simulator.place, 0, flock_settings(address))
-        port.open(reset=False)
+        port.open()
         for parameter, size in SIZES.items():
-            port.tell(examine(parameter))
+            port.line.write(bytes([EXAMINE, parameter]))
             assert len(port.line.read_exactly(size + 1, ANSWER_S)) == size, parameter
         port.line.close()
 
