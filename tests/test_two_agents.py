@@ -141,8 +141,8 @@ def test_the_observation_comes_back_from_json(seen: Observation) -> None:
 def test_the_reason_says_that_it_was_another_agent(folder: Path) -> None:
     both = explained(read_capture(folder), rules=profile())
     for name, reason in (
-        ("HandOver", "it was another agent who had taken it"),
-        ("Accept", "it was another agent who had it"),
+        ("HandOver", "another agent had taken it"),
+        ("Accept", "another agent had it"),
     ):
         (segment,) = [each for each in both.observation.segments if each.name == name]
         assert reason in both.explainer.explain(segment).summary

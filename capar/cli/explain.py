@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from capar.model.observation import Segment
     from capar.pipelines.explanation import Explained
     from capar_rules.explain.explanation import Explanation
-    from capar_rules.explain.nearest_rules import NearRule
-    from capar_rules.explain.why_not import Alternative
 
 
 def explain(
@@ -34,7 +32,7 @@ def explain(
         str | None,
         typer.Option(
             help="A name that it has not: the rule for it that comes nearest, with the conditions "
-            "that it lacks; then the smallest change of what was measured; then other rules."
+            "that it lacks; then the smallest change of what was measured."
         ),
     ] = None,
     every: Annotated[
@@ -49,15 +47,16 @@ def explain(
     plot: Annotated[
         Path | None,
         typer.Option(
-            help="Draw what the summary of SEGMENT speaks of over time to this .png, .svg or .pdf: "
-            "each distance, way, angle and speed with its threshold, and the numbers told."
+            help="Draw the quantities of SEGMENT's conditions over time to this .png, .svg or .pdf, "
+            "each with its limits and the intervals of the facts about it."
         ),
     ] = None,
 ) -> None:
-    """Say why SEGMENT of CAPTURE has its name: the rules and facts behind it, in sentences."""
+    """Say why SEGMENT of CAPTURE has its name: its conditions, and the rules and facts behind it."""
     from capar.cli.output import check_writable
     from capar.pipelines.explanation import explained, segment_named
-    from capar.pipelines.explanation_text import explanation_lines, notice_lines
+    from capar.views.explanation_text import explanation_lines, notices_about
+    from capar.views.notices import reservation_lines
     from extractors.readers.bundle.capture_toml import read_capture
 
     if svg:
@@ -76,7 +75,7 @@ def explain(
     if why_not:
         _why_not(why_not, chosen, seen, json=json, alone=alone, limit=100 if every else 1)
         return
-    told = list(seen.explainer.explain_all(chosen))
+    told = seen.explain(chosen)
     if svg:
         _draw(told, seen, svg)
     if plot:
@@ -84,9 +83,12 @@ def explain(
     if json:
         print_json([_plain(each, seen) for each in told])
         return
-    for line in explanation_lines(told, seen, tree=alone):
-        typer.echo(line)
-    for line in notice_lines(chosen, seen, told if alone else ()):
+    for each in told:
+        definitions = seen.definitions(each) if alone else None
+        for line in explanation_lines(each, seen.observation, definitions):
+            typer.echo(line)
+    notices = notices_about(chosen, seen.observation, told if alone else ())
+    for line in reservation_lines(notices, called=seen.explainer.names, unshaped=seen.unshaped):
         typer.echo(line)
 
 
@@ -100,77 +102,56 @@ def _why_not(
     limit: int,
 ) -> None:
     """Print of each segment what it lacks for a name, as many smallest changes as asked for."""
-    from capar.pipelines.explanation_text import header, notice_lines
-    from capar_rules.explain.nearest_rules import nearest_rules
-    from capar_rules.explain.why_not import why_not
-
-    asked = [one for one in chosen if alone or one.name != name]
-    rows = [
-        (
-            one,
-            why_not(seen.explainer, one, name, limit=limit),
-            () if name in one.general else nearest_rules(seen.explainer, one, name),
-        )
-        for one in asked
-    ]
-    if json:
-        print_json(_rows(rows, seen))
-        return
-    for one, found, rules_near in rows:
-        if not alone:
-            typer.echo(f"{header(one)}  {one.name}")
-        _print_why_not(name, found, rules_near, others=alone or limit > 1)
-    for line in notice_lines(asked, seen):
-        typer.echo(line)
-
-
-def _print_why_not(
-    name: str,
-    found: "tuple[Alternative, ...]",
-    near: "tuple[NearRule, ...]",
-    *,
-    others: bool,
-) -> None:
-    """The nearest rule, the smallest changes of what was measured, and then the other rules."""
-    lacking = [rule for rule in near if rule.failing]
-    if lacking:
-        typer.echo(f"Nearest rule: {lacking[0].sentence}")
-    for each in found:
-        typer.echo(each.sentence)
-    if not found:
-        typer.echo(f"Nothing between these borders could have been {name}.")
-    for rule in lacking[1:] if others else ():
-        typer.echo(f"Further off: {rule.sentence}")
-
-
-def _rows(
-    rows: "Sequence[tuple[Segment, tuple[Alternative, ...], tuple[NearRule, ...]]]",
-    seen: "Explained",
-) -> list[dict[str, Any]]:
     from dataclasses import asdict
 
-    from capar.pipelines.explanation_text import notices_about
+    from capar.views.explanation_text import condition_table, header, notices_about
+    from capar.views.notices import reservation_lines
+    from capar_rules.explain.why_not import why_not
 
-    return [
-        {"ee": each.ee, "index": each.index, "is": each.name, "sentence": told.sentence}
-        | _placed(asdict(told), seen)
-        | {"rules": [{**asdict(rule), "sentence": rule.sentence} for rule in near]}
-        | {"notices": [notice.document() for notice in notices_about([each], seen)]}
-        for each, found, near in rows
-        for told in found
-    ]
+    rows = []
+    asked = [one for one in chosen if alone or one.name != name]
+    for one in asked:
+        found = why_not(seen.explainer, one, name, limit=limit)
+        near = () if name in one.general else seen.nearest_rules(one, name)
+        if json:
+            notices = [notice.document() for notice in notices_about([one], seen.observation)]
+            told = {"ee": one.ee, "index": one.index, "is": one.name, "notices": notices}
+            rules = [asdict(rule) | {"sentence": rule.sentence} for rule in near]
+            rows += [
+                told | {"sentence": each.sentence, "rules": rules} | _placed(asdict(each), seen)
+                for each in found
+            ]
+            continue
+        if not alone:
+            typer.echo(f"{header(one)}  {one.name}")
+        for rule in near:
+            if rule.failing:
+                typer.echo(f"Nearest rule: {rule.rule} lacks")
+                for line in condition_table(rule.failing):
+                    typer.echo(line)
+        for each in found:
+            typer.echo(each.sentence)
+        if not found:
+            typer.echo(f"Nothing between these borders could have been {name}.")
+    if json:
+        print_json(rows)
+        return
+    notices = notices_about(asked, seen.observation)
+    for line in reservation_lines(notices, called=seen.explainer.names, unshaped=seen.unshaped):
+        typer.echo(line)
 
 
 def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
     from dataclasses import asdict, replace
 
-    from capar.pipelines.explanation_text import definitions, notices_about
+    from capar.views.explanation_text import notices_about
 
-    segments = [e for e in seen.observation.segments if (e.ee, e.index) == (told.ee, told.index)]
-    notices = [note.document() for note in notices_about(segments, seen, [told])]
+    observation = seen.observation
+    segments = [e for e in observation.segments if (e.ee, e.index) == (told.ee, told.index)]
+    notices = [note.document() for note in notices_about(segments, observation, [told])]
     whole = replace(told, reason=told.reason.expanded_once())
     placed = _placed(asdict(whole), seen)
-    return placed | {"definitions": definitions(told, seen), "notices": notices}
+    return placed | {"definitions": seen.definitions(told), "notices": notices}
 
 
 def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
@@ -191,25 +172,24 @@ def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
     return placed
 
 
-def _draw(told: "list[Explanation]", seen: "Explained", path: Path) -> None:
+def _draw(told: "Sequence[Explanation]", seen: "Explained", path: Path) -> None:
     from capar.cli.output import written
-    from capar.views.reasons import reasons_svg
+    from capar.views.explanation_svg import reasons_svg
 
     with written(path) as draft:
         draft.write_text(reasons_svg(told, seen.observation), encoding="utf-8")
     typer.echo(f"drew {path}", err=True)
 
 
-def _plot(told: "list[Explanation]", seen: "Explained", path: Path) -> None:
+def _plot(told: "Sequence[Explanation]", seen: "Explained", path: Path) -> None:
     from capar.cli.output import written
-    from capar.pipelines.explanation_text import staying
-    from capar.pipelines.measured.claims import draw_claims
+    from capar.pipelines.explanation import explanation_plot
+    from capar.views.explanation_plot import draw_explanation
 
     if len(told) != 1:
         raise typer.BadParameter(
             "draws one segment: name one, such as right_hand/3.", param_hint="--plot"
         )
-    (one,) = told
     with written(path) as draft:
-        draw_claims(seen, one, draft, staying=staying(one))
+        draw_explanation(explanation_plot(seen, told[0]), draft)
     typer.echo(f"drew {path}", err=True)

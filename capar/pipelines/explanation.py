@@ -1,46 +1,32 @@
 """The pipeline from a capture to reasons: observe it, then say why, and why not."""
 
 import re
-from collections import defaultdict
-from dataclasses import dataclass
-from functools import cache, cached_property
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from capar.model import geometry
 from capar.model.body_names import body_names
 from capar.model.capture import Capture
-from capar.model.facts import Moving
 from capar.model.observation import Observation, Segment, SegmentAddress, find_segment
-from capar.pipelines.distances import apart_within, reaches
+from capar.pipelines.measures import Measures, Series
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
+from capar.views.explanation_plot import Panel, Plot
 from capar_rules.authoring.user_primitives import rules_of
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
+from capar_rules.explain.conditions import Measured
 from capar_rules.explain.explanation import Explainer, Explanation
-from capar_rules.explain.measured import (
-    Heights,
-    Leans,
-    Measured,
-    Places,
-    TurnsBack,
-    Ways,
-    fewer_frames,
-)
-from capar_rules.explain.quantities import Over, Turns, Way
+from capar_rules.explain.nearest import NearRule
+from capar_rules.explain.quantities import QUANTITIES
 from capar_rules.explain.why_not import Alternative
 from capar_rules.explain.why_not import why_not as alternatives
-from extractors.calibration import thresholds_of
-from extractors.measure import Measurements, measure
-from extractors.motion.phases import lean, most_turns
-from extractors.relations.arrangement import Pair
+from extractors.measure import measure
 
-AXES = ("along the x axis", "along the y axis", "up and down")
-"""The axes of the world, as sentences have them."""
-
-GAP_S = 0.1
-"""Shorter gaps in a track are not told of [s]."""
+AROUND_S = 1.0
+"""So long before and after the segment is drawn [s]."""
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
@@ -51,12 +37,48 @@ class Explained:
 
     observation: Observation
     explainer: Explainer
-    measurements: Measurements
+    measures: Measures
+
+    def explain(self, segments: Sequence[Segment]) -> tuple[Explanation, ...]:
+        """Why segments have their names, with what was measured for each condition.
+
+        Raises:
+            RuleError: A segment does not follow from the facts and rules.
+        """
+        return tuple(map(self._completed, self.explainer.explain_all(segments)))
+
+    def nearest_rules(self, segment: Segment, name: str) -> list[NearRule]:
+        """The rule that could give a segment another name, with the conditions that fail.
+
+        Raises:
+            RuleError: The segment does not follow from the facts and rules.
+        """
+        found = self.explainer.nearest_rules(segment, name)
+        fill = self.measures.completed
+        return [replace(one, failing=tuple(map(fill, one.failing))) for one in found]
 
     @cached_property
-    def definitions(self) -> dict[str, str]:
-        """What each name is, in words, as the head of its rule file says it."""
+    def unshaped(self) -> set[str]:
+        """The bodies without a shape."""
+        bodies = self.measures.measurements.bodies
+        every = {**bodies.objects, **bodies.sensors}
+        return {name for name, body in every.items() if body.shape is None}
+
+    def _completed(self, told: Explanation) -> Explanation:
+        near, fill = told.nearest, self.measures.completed
+        if near is not None:
+            near = replace(near, failing=tuple(map(fill, near.failing)))
+        return replace(told, conditions=tuple(map(fill, told.conditions)), nearest=near)
+
+    @cached_property
+    def _definitions(self) -> dict[str, str]:
         return {rule.name: rule.definition for rule in rules_of(self.explainer.profile)}
+
+    def definitions(self, told: Explanation) -> dict[str, str]:
+        """What the names are of which a summary speaks, as the heads of their rule files say it."""
+        near = (told.nearest.name,) if told.nearest else ()
+        names = dict.fromkeys((told.name, *told.general, *near))
+        return {name: self._definitions[name] for name in names if name in self._definitions}
 
 
 def explained(capture: Capture, *, rules: Profile) -> Explained:
@@ -67,9 +89,8 @@ def explained(capture: Capture, *, rules: Profile) -> Explained:
     """
     measurements = measure(capture)
     observation = observe_measured(capture, measurements, rules=rules)
-    measured = measured_of(observation, measurements)
-    explainer = Explainer(observation.facts, profile=rules, measured=measured)
-    return Explained(observation, explainer, measurements)
+    explainer = Explainer(observation.facts, rules, body_names(observation))
+    return Explained(observation, explainer, Measures(observation, measurements))
 
 
 def explain(
@@ -87,7 +108,7 @@ def explain(
         CaparError: The capture or the rules have a fault.
     """
     seen = _explained(capture, rules)
-    return seen.explainer.explain_all(chosen(seen.observation, segment))
+    return seen.explain(chosen(seen.observation, segment))
 
 
 def why_not(
@@ -147,138 +168,6 @@ def segments_in(seen: Explained, atom: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def measured_of(observation: Observation, measurements: Measurements) -> Measured:
-    """What explanations say of bodies beside the facts: ways, names and distances of touch."""
-    calibration = measurements.calibration
-    bodies = (*calibration.sensors, *calibration.objects)
-    return Measured(
-        ways(measurements),
-        leans=_leans(measurements),
-        far_over_rad=thresholds_of(calibration).lean_rad,
-        turns=_turns(measurements),
-        names=body_names(observation),
-        reaches=reaches(measurements),
-        floors={thing.name: thing.motion_floor_m for thing in bodies},
-        turned=_turned(measurements),
-        turn_floors={thing.name: thing.motion_floor_rad for thing in bodies},
-        stand_ins={
-            body: str(notice["shape"])
-            for notice in observation.notices
-            if notice.code == "stand-in-shape"
-            for body in notice.bodies
-        },
-        heights=_heights(measurements),
-        over=_over(measurements),
-        apart=apart_within(measurements),
-        gap_frames=fewer_frames(calibration.contact_dropout_s, observation.rate_hz),
-        brief_frames=fewer_frames(calibration.contact_minimum_s, observation.rate_hz),
-        lost=_lost(observation, measurements),
-        unrested=_unrested(observation),
-        rate_hz=observation.rate_hz,
-    )
-
-
-def _heights(measurements: Measurements) -> Heights:
-    """How low and how high bodies were."""
-
-    def extremes(name: str, first: int, last: int) -> tuple[float, float]:
-        height = measurements.bodies.named(name).middles[first : last + 1, 2]
-        return float(np.nanmin(height) - height[0]), float(np.nanmax(height) - height[0])
-
-    return extremes
-
-
-def _over(measurements: Measurements) -> Places:
-    """Where bodies are to others at frames."""
-    limits = thresholds_of(measurements.calibration)
-    bodies = measurements.bodies
-
-    @cache
-    def pair(name: str, other: str) -> Pair:
-        return Pair(bodies.named(name), bodies.named(other), limits)
-
-    def at(name: str, other: str, frame: int) -> Over:
-        known = pair(name, other)
-        rise = known.body.middles[frame, 2] - known.other.boxes[1][frame, 2]
-        share, deep = known.shares
-        shaped = known.other.shape is not None
-        aside = float(known.aside[frame])
-        return Over(float(rise), aside, float(share[frame]), float(deep[frame]), shaped)
-
-    return at
-
-
-def _lost(observation: Observation, measurements: Measurements) -> dict[str, list[tuple[int, int]]]:
-    """The gaps in the tracks of bodies, by body."""
-    least = GAP_S * observation.rate_hz
-    bodies = measurements.bodies
-    return {
-        name: [
-            (first, last) for first, last in geometry.runs(body.poses.lost) if last - first >= least
-        ]
-        for name, body in {**bodies.objects, **bodies.sensors}.items()
-    }
-
-
-def _unrested(observation: Observation) -> frozenset[str]:
-    """Objects that move in every frame."""
-    count: dict[str, int] = defaultdict(int)
-    for fact in observation.facts:
-        if isinstance(fact, Moving):
-            count[fact.object] += fact.last - fact.first + 1
-    return frozenset(name for name, moving in count.items() if moving >= observation.frames)
-
-
-def ways(measurements: Measurements) -> Ways:
-    """How a body's middle moves between two frames; steps between lost frames are left out.
-
-    The middle is that of its shape, as of the places by which rules decide; without a shape it is
-    the origin.
-    """
-
-    def moved(name: str, first: int, last: int) -> Way:
-        track = measurements.bodies.named(name).middles[first : last + 1]
-        steps = np.linalg.norm(np.diff(track, axis=0), axis=1)
-        away = geometry.from_middle(track)
-        straight = float(np.linalg.norm(track[-1] - track[0]))
-        return Way(straight, float(np.nansum(steps)), float(np.nanmax(away)))
-
-    return moved
-
-
-def _leans(measurements: Measurements) -> Leans:
-    """How far bodies lean at most between two frames."""
-
-    def most(name: str, first: int, last: int) -> float:
-        orientations = measurements.bodies.named(name).orientations[first : last + 1]
-        upright = np.array(measurements.calibration.body(name).upright)
-        return float(np.nanmax(lean(orientations, upright)))
-
-    return most
-
-
-def _turned(measurements: Measurements) -> Leans:
-    """By what angle bodies were turned at most from their mean orientation between two frames."""
-
-    def most(name: str, first: int, last: int) -> float:
-        orientations = measurements.bodies.named(name).orientations[first : last + 1]
-        return float(np.nanmax(geometry.from_mean(orientations)))
-
-    return most
-
-
-def _turns(measurements: Measurements) -> TurnsBack:
-    """How often bodies turn back between two frames."""
-    limits = thresholds_of(measurements.calibration)
-
-    def turned(name: str, first: int, last: int) -> Turns:
-        stream = measurements.bodies.named(name).poses.smooth
-        axis, turns = most_turns(stream, (first, last), limits)
-        return Turns(len(turns), AXES[axis])
-
-    return turned
-
-
 def segment_named(observation: Observation, text: str) -> Segment:
     """The segment of an observation at an address such as ``right_hand/3``.
 
@@ -288,3 +177,57 @@ def segment_named(observation: Observation, text: str) -> Segment:
     """
     address = SegmentAddress.parse(text)
     return find_segment(observation.links, address, capture=observation.capture)
+
+
+def explanation_plot(seen: Explained, told: Explanation) -> Plot:
+    """The quantities of an explanation's conditions, and of the nearest other name, over time."""
+    observation, measures = seen.observation, seen.measures
+    segment = segment_named(observation, str(SegmentAddress(told.ee, told.index)))
+    rate = observation.rate_hz
+    around = round(AROUND_S * rate)
+    first, last = max(segment.first - around, 0), min(segment.last + around, observation.frames - 1)
+    near = told.nearest.failing if told.nearest else ()
+    groups: dict[tuple[object, ...], list[Measured]] = {}
+    for one in dict.fromkeys(each for row in (*told.conditions, *near) for each in row.measures):
+        start = one.first if one.quantity not in ("distance", "closing", "push") else segment.first
+        groups.setdefault((one.quantity, one.bodies, start), []).append(one)
+    panels = []
+    for every in groups.values():
+        series = measures.series(every[0], np.arange(first, last + 1))
+        if series is not None:
+            panels.append(_panel(every, series, rate))
+    title = f"{SegmentAddress(told.ee, told.index)}  {told.name}  "
+    return Plot(
+        f"{title}{told.start_s:.2f} to {told.end_s:.2f} s",
+        told.summary,
+        (first / rate, last / rate),
+        (segment.first / rate, segment.last / rate),
+        tuple(
+            (one.first / rate, one.last / rate, one.name)
+            for one in observation.segments
+            if one.ee == told.ee
+        ),
+        tuple(panels),
+    )
+
+
+def _panel(every: Sequence[Measured], series: Series, rate_hz: float) -> Panel:
+    """The panel of what conditions measure of one quantity of certain bodies."""
+    scale, unit = QUANTITIES[every[0].quantity].scale, every[0].unit
+    limits = {(one.limit, one.limit_text) for one in every if one.limit is not None}
+    marks = dict.fromkeys(
+        (series.frame(one.first, one.last) / rate_hz, one.value, one.value_text)
+        for one in every
+        if one.value is not None
+    )
+    bars = tuple((begin / rate_hz, end / rate_hz) for begin, end in series.bars)
+    return Panel(
+        f"{every[0].label} [{unit}]" if unit else every[0].label,
+        series.frames / rate_hz,
+        series.values * scale,
+        unit,
+        tuple(sorted(limits)),
+        tuple(marks),
+        bars,
+        series.held,
+    )

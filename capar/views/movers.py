@@ -2,7 +2,6 @@
 
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from capar.model.body_names import is_plural, limb_names
 from capar.model.facts import MovedBy, Touching
@@ -78,44 +77,6 @@ def _apart(
                 alone[who].append(frame)
     least = (1.0 - ALL_BUT / 100.0) * len(frames)
     return {who: held for who, held in sorted(alone.items()) if len(held) > least}
-
-
-@dataclass(frozen=True, slots=True)
-class MoverStretches:
-    """When something moves a thing, in one way, within a segment."""
-
-    thing: str
-    words: str
-    """What it does, as a sentence says it: moved by the right hand."""
-
-    spans: tuple[tuple[int, int], ...]
-    """First and last frames."""
-
-    percent: int
-    """Its share of the frames in which the thing moves [%]."""
-
-
-def mover_stretches(
-    seen: Observation, ee: str, index: int, *, staying: Collection[str] = ()
-) -> tuple[MoverStretches, ...]:
-    """When each mover moves each object that moves in a segment; arguments as of the lines."""
-    names, found = limb_names(seen), []
-    for thing, frames in _moved(seen, ee, index, staying):
-        ways: dict[str, list[int]] = defaultdict(list)
-        touching = _touching(frames.values())
-        for frame, movers in sorted(frames.items()):
-            moving = _movers(movers) - touching
-            for words in {_words(*mover, moving=moving) for mover in movers}:
-                ways[words].append(frame)
-        for words, held in sorted(ways.items(), key=lambda way: (-len(way[1]), way[0])):
-            share = round(100.0 * len(held) / len(frames))
-            called = names.get(thing, spoken(thing))
-            found.append(MoverStretches(called, words, tuple(_spans(held)), share))
-        for who, held in _apart(seen, thing, frames).items():
-            share = round(100.0 * len(held) / len(frames))
-            words = f"the {spoken(who)} near, moving alike, and not in contact"
-            found.append(MoverStretches(called, words, tuple(_spans(held)), share))
-    return tuple(found)
 
 
 def _words(how: str, who: str, *, moving: Collection[str]) -> str:

@@ -269,18 +269,6 @@ def note_lines(notices: Iterable[Notice], *, most: int = MOST) -> tuple[str, ...
     )
 
 
-def named_in(texts: Iterable[str], bodies: Iterable[str], *, called: Mapping[str, str]) -> set[str]:
-    """The bodies of which texts speak by their name, as ``the red cup``."""
-    whole = "\n".join(texts)
-    names = {body: called.get(body, body.replace("_", " ")) for body in bodies}
-    found = set()
-    for body, name in sorted(names.items(), key=lambda row: len(row[1]), reverse=True):
-        whole, count = re.subn(rf"\bthe {re.escape(name)}\b", "", whole, flags=re.IGNORECASE)
-        if count:
-            found.add(body)
-    return found
-
-
 def reservation_lines(
     notices: Sequence[Notice],
     *,

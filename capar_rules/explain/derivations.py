@@ -1,21 +1,104 @@
-"""Why an atom holds: the rules that derived it, recorded while the solver grounds them."""
+"""Why an atom holds: the rules that derived it, recorded while the solver grounds them.
 
+Several windows of facts are solved at once: each atom has the number of its window as first
+argument, so that the rules are read and grounded once and no atom meets one of another window.
+"""
+
+import math
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Container, Iterable, Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cache, lru_cache
 
 import clingo
 
 from capar.model.errors import RuleError
-from capar.model.facts import Fact
-from capar_rules.engine.solver import ERRORS_ONLY
-from capar_rules.engine.syntax import Literal, Place, Signature, Statement, firing, towards
-from capar_rules.explain.numbered import NUMBERS, WINDOW, Numbering
+from capar.model.facts import ALL_FACT_KINDS, Fact
+from capar_rules.engine.search import ERRORS_ONLY
+from capar_rules.engine.slicing import firing, towards
+from capar_rules.engine.syntax import Atom, Literal, Place, Signature, Statement
+
+SIGNS = ("<=", ">=", "<", ">")
 
 ABSENT = "absent"
 """Functor of a negated literal among the children of a derivation."""
+
+
+WINDOW = "W_"
+"""A variable that no rule uses, for the number of a window."""
+
+NUMBERS = "window_number"
+"""The predicate of the numbers themselves."""
+
+FACTS = {(each.predicate, len(fields(each))) for each in ALL_FACT_KINDS}
+"""Predicates of facts, which a rule file may state too: measured, corrected, what moves what."""
+
+_ATOM = re.compile(r"((?:not )*)(\w+)(?:\((.*)\))?", re.DOTALL)
+
+
+class Numbering:
+    """How statements are written so that the numbers of windows keep their atoms apart."""
+
+    def __init__(self, statements: Iterable[Statement]) -> None:
+        rules = [each for each in statements if each.kind == "rule"]
+        derived = {head.signature for each in rules if each.body for head in each.heads}
+        self.same = {head.signature for each in rules for head in each.heads} - derived - FACTS
+        """Predicates that are stated in the rules alone, and are the same in every window."""
+
+    def rule(self, statement: Statement) -> str:
+        """A rule with the atoms of one window; other statements as they are."""
+        if statement.kind != "rule" or self._is_same(statement):
+            return statement.text
+        if statement.head_kind == "constraint":
+            return f":- {self.body(statement.body)}."
+        head = statement.text.partition(" :- ")[0].removesuffix(".")
+        return f"{self._inside(head, statement.heads)} :- {self.body(statement.body)}."
+
+    def body(self, literals: Iterable[Literal], *more: str) -> str:
+        """Conditions within one window, and others as they are."""
+        return "; ".join((*map(self.literal, literals), *more, f"{NUMBERS}({WINDOW})"))
+
+    def literal(self, literal: Literal) -> str:
+        """A condition with the atoms of one window."""
+        if literal.kind == "atom":
+            return self.atom(literal.text, literal.atoms[0].signature)
+        return self._inside(literal.text, literal.atoms)
+
+    def atom(self, text: str, signature: Signature) -> str:
+        """An atom, or its negation, of one window; of a pool, each."""
+        found = _ATOM.fullmatch(text)
+        if signature in self.same or found is None:
+            return text
+        negation, name, inside = found.groups()
+        numbered = (f"{WINDOW},{each}" if each else WINDOW for each in _alternatives(inside or ""))
+        return f"{negation}{name}({';'.join(numbered)})"
+
+    def _inside(self, text: str, atoms: Iterable[Atom]) -> str:
+        """A text with these of its atoms of one window."""
+        known = {each.text: each.signature for each in atoms}
+        if not known:
+            return text
+        every = "|".join(re.escape(each) for each in sorted(known, key=len, reverse=True))
+        pattern = rf"(?<!\w)(?:{every})(?!\w)"
+        return re.sub(pattern, lambda found: self.atom(found[0], known[found[0]]), text)
+
+    def _is_same(self, statement: Statement) -> bool:
+        return bool(statement.heads) and all(
+            each.signature in self.same for each in statement.heads
+        )
+
+
+def _alternatives(inside: str) -> Iterator[str]:
+    """The arguments of an atom, or those of each alternative of a pool."""
+    depth, quoted, start = 0, False, 0
+    for at, sign in enumerate(inside):
+        quoted ^= sign == '"' and inside[at - 1 : at] != "\\"
+        depth += (not quoted) * ((sign in "([") - (sign in ")]"))
+        if sign == ";" and not depth and not quoted:
+            yield inside[start:at]
+            start = at + 1
+    yield inside[start:]
 
 
 @dataclass(frozen=True)
@@ -34,13 +117,32 @@ class Grounds:
     because: tuple["Grounds", ...]
 
 
-_SHOWN = ("#show because/4.", "#show because_part/4.", "#show also/3.")
+_SHOWN = ("because/4", "because_part/4", "also/3", "compared/5")
+_INEQUALITY = re.compile(r"(.+?)\s*(<=|>=|<|>)\s*(.+)", re.DOTALL)
+
+_SQUARE = re.compile(r"\b(\w+)\s*\*\s*\1\b")
+
+Compared = tuple[float, str, float]
+"""The left side of an inequality, its sign and its right side; of squares, their roots."""
 
 
 class Recorder:
     """A rule base extended by rules that record which instances of its rules fired."""
 
-    def __init__(self, statements: Iterable[Statement], *, targets: Iterable[Signature]) -> None:
+    def __init__(
+        self,
+        statements: Iterable[Statement],
+        *,
+        targets: Iterable[Signature],
+        compared: Container[Signature] = (),
+    ) -> None:
+        """Make rules ready.
+
+        Args:
+            statements: A rule base.
+            targets: The predicates to derive.
+            compared: Predicates of which the values of inequalities are recorded.
+        """
         self.rules = towards(list(statements), targets)
         self.numbering = Numbering(self.rules)
         recorded = [each for each in self.rules if each.body]
@@ -48,13 +150,15 @@ class Recorder:
         self._texts = {rule: [self.numbering.rule(rule)] for rule in self.rules}
         for number, rule in enumerate(recorded):
             self._texts[rule] += _records(number, rule, self.numbering)
+            if any(head.signature in compared for head in rule.heads):
+                self._texts[rule] += _comparisons(rule, self.numbering)
 
     @cache  # noqa: B019 - recorders are few and kept
     def text(self, measured: frozenset[Signature]) -> str:
         """The rules that can fire if these predicates have facts, each with its recording rules."""
         rules = firing(self.rules, measured)
         lines = (line for rule in dict.fromkeys(rules) for line in self._texts[rule])
-        return "\n".join([*lines, *_SHOWN])
+        return "\n".join([*lines, *(f"#show {each}." for each in _SHOWN)])
 
     def solve(self, windows: Sequence[Sequence[Fact]]) -> list["Derivations"]:
         """For each window of facts, derive what follows from them alone, and record how.
@@ -102,11 +206,22 @@ class Derivations:
         self.instances: dict[clingo.Symbol, list[tuple[int, clingo.Symbol]]] = defaultdict(list)
         self.parts: dict[tuple[int, clingo.Symbol], list[clingo.Symbol]] = defaultdict(list)
         self.more: dict[clingo.Symbol, list[clingo.Symbol]] = defaultdict(list)
+        self.compared: dict[str, dict[int, Compared]] = defaultdict(dict)
+        """The inequalities in rules for an atom, whether it holds or not."""
+
         self.named: dict[str, dict[clingo.Symbol, None]] = defaultdict(dict)
         """Every derived atom by its predicate."""
 
     def note(self, kind: str, arguments: Sequence[clingo.Symbol]) -> None:
-        """Keep a record: ``because``, ``because_part`` or ``also``, without its window."""
+        """Keep a record, without its window."""
+        if kind == "compared":
+            head, place, left, right = arguments
+            number, sign = divmod(place.number // 2, len(SIGNS))
+            values = [float(one.number) for one in (left, right)]
+            if place.number % 2:
+                values = [math.sqrt(max(one, 0.0)) for one in values]
+            self.compared[str(head)].setdefault(number, (values[0], SIGNS[sign], values[1]))
+            return
         if kind == "also":
             head, other = arguments
             self.more[head].append(other)
@@ -132,6 +247,10 @@ class Derivations:
     def holds(self, atom: str) -> bool:
         """Whether a rule derived an atom."""
         return any(str(each) == atom for each in self.named.get(atom.partition("(")[0], ()))
+
+    def comparisons(self, atom: str) -> dict[int, Compared]:
+        """The inequalities in the rules for an atom with their values, by their number there."""
+        return self.compared.get(atom, {})
 
     def why(self, atom: str) -> Grounds:
         """The derivation tree of an atom.
@@ -218,6 +337,29 @@ def _records(number: int, rule: Statement, numbering: Numbering) -> list[str]:
             part = f"because_part({WINDOW},{number},{head},{_tuple(element)})"
             own = _variables(inside) - shared - {WINDOW}
             lines.append(_renamed(part, own) + f" :- {body}; {_renamed(inside, own)}.")
+    return lines
+
+
+def _comparisons(rule: Statement, numbering: Numbering) -> list[str]:
+    """Rules that record both sides of each inequality wherever the atoms of the body hold."""
+    if rule.head_kind != "atom" or len(rule.heads) != 1:
+        return []
+    others = [one for one in rule.body if one.kind == "atom" and not one.sign]
+    others += [one for one in rule.body if re.fullmatch(r"\w+ = [^(;]+", one.text)]
+    body = numbering.body(others)
+    bound = _variables(body) | {WINDOW}
+    lines, number = [], 0
+    for one in rule.body:
+        found = _INEQUALITY.fullmatch(one.text) if one.kind == "comparison" else None
+        if found is None or one.sign:
+            continue
+        left, sign, right = found.groups()
+        if _variables(one.text) <= bound:
+            squared = bool(_SQUARE.search(left))
+            place = 2 * (number * len(SIGNS) + SIGNS.index(sign)) + squared
+            head = f"compared({WINDOW},{rule.heads[0].text},{place},{left},{right})"
+            lines.append(f"{head} :- {body}.")
+        number += 1
     return lines
 
 

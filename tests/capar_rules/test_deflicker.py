@@ -220,9 +220,9 @@ def test_an_explanation_says_what_was_doubted() -> None:
     facts = steady(flickering(measure(capture).facts, capture.rate_hz))
     (link,) = infer(facts, profile=profile()).links
     explainer = Explainer(facts, profile=profile())
-    told = {each.name: explainer.explain(each).summary for each in link.segments}
-    assert "and taken to go on, as so the fewest changes explain it" in told["Touch"]
-    assert "taken" not in told["Reach"]
+    noted = {each.name: explainer.explain(each).notes for each in link.segments}
+    assert "contact is assumed" in noted["Touch"][0]
+    assert not noted["Reach"]
 
 
 def test_nothing_is_said_of_doubt_where_nothing_flickers() -> None:

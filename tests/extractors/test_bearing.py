@@ -117,7 +117,7 @@ def test_an_explanation_says_what_the_foot_bore_and_when_that_was_measured() -> 
     told = explained(capture, rules=profile())
     ((_, first, last),) = [each for each in bears(capture)["left_foot"] if each[0] == "whole"]
     explanation = told.explainer.explain(told.observation.links[0].segments[1])
-    assert explanation.summary.count("the foot bore the whole weight of the body") == 1
+    assert explanation.summary.count("the left foot bore the whole weight of the body") == 1
     leaves = {each.frames for each in explanation.reason.walk() if each.atom.startswith("bears(")}
     assert leaves == {(first, last)}
 

@@ -134,7 +134,7 @@ def _meanwhile(facts: Sequence[Fact], segment: Segment) -> Iterator[Fact]:
 
 def _told(one: Asked, fact: Fact, rules: Profile) -> Loss:
     """Whether a segment that keeps its name without a fact is explained in other words."""
-    told = explanation(Explainer(_less(one, fact), profile=rules), one.segment)
+    told = explanation(Explainer(_less(one, fact), rules), one.segment)
     same = set(filter(None, told.values())) == set(filter(None, one.told.values()))
     return Loss.NOTHING if same else Loss.TOLD
 

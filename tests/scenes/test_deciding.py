@@ -5,9 +5,9 @@ import random
 import pytest
 
 from capar.model.facts import Fact, Frames, Link, RateMhz, Touching
+from capar.pipelines.explanation import explained
 from capar_rules.engine.profiles import profile
-from scenes.deciding import Asked, Loss, Removal, removals
-from scenes.explanations import checked
+from scenes.deciding import Asked, Loss, Removal, asked, removals
 from scenes.hands import SCENES as HANDS
 from scenes.objects import SCENES as OBJECTS
 
@@ -26,8 +26,9 @@ def found() -> dict[str, tuple[Asked, list[Removal]]]:
     """For each of some segments, what it was named by, and what the loss of each fact changes."""
     wanted = []
     for scenes, scene, name in SOME.values():
-        segments = checked(scenes[scene], random.Random(0), RULES, name=name)
-        wanted.append(segments.asked)
+        seen = explained(scenes[scene](100.0, 0.0, 0.0, 0)[0], rules=RULES)
+        named = [each for each in seen.observation.segments if each.name == name]
+        wanted.append(asked(seen.explainer, random.Random(0).choice(named), RULES))
     return dict(zip(SOME, zip(wanted, removals(wanted, RULES), strict=True), strict=True))
 
 

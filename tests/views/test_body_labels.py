@@ -5,8 +5,7 @@ from itertools import combinations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from capar.views.number_places import Box, distance, meet
-from capar.views.viewer.snapshot import Labelled, leader, place_labels
+from capar.views.viewer.snapshot import Box, Labelled, distance, leader, meet, place_labels
 
 PAGE = (9.0, 6.6)
 places = st.tuples(st.floats(3.0, 6.0), st.floats(2.0, 4.5))

@@ -10,7 +10,6 @@ from capar.pipelines.observation import observe
 from capar.views.notices import (
     BY_DISTANCE,
     PLAIN,
-    named_in,
     reservation_lines,
     reservations_on_told,
 )
@@ -153,13 +152,6 @@ def test_only_what_has_no_shape_is_said_to_have_none(unshaped: set[str], text: s
     alone = judged("pivot-distance", ("right_hand", "mug"))
     (line,) = reservation_lines(alone, unshaped={"right_hand"})[2:]
     assert "Contacts of the right hand are inferred" in line
-
-
-def test_the_bodies_of_which_texts_speak_are_found_by_their_longest_name() -> None:
-    bodies, called = {"hand", "right_hand", "t1", "cup"}, {"t1": "large table"}
-    texts = ["Carry, because the right hand touched the large table.", "The cups were moved."]
-    assert named_in(texts, bodies, called=called) == {"right_hand", "t1"}
-    assert named_in(["The cup moved", "the hand"], bodies, called=called) == {"cup", "hand"}
 
 
 def test_a_note_calls_a_thing_as_the_text_does() -> None:

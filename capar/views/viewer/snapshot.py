@@ -12,12 +12,17 @@ from scipy.spatial.transform import Rotation
 
 from capar.model.errors import FileError
 from capar.views.lettering import POINTS_PER_INCH, width_in
-from capar.views.number_places import Box, Place, distance, meet
 from capar.views.viewer.stage import Stage, StagedBody, is_ground, world_bounds
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+
+Box = tuple[float, float, float, float]
+"""Left, right, bottom and top, from the lower left corner of the picture [inches]."""
+
+Place = tuple[float, float]
+"""Rightward and upward from that corner [inches]."""
 
 LARGE_IN = 1.1
 """A body that is wider and higher in the picture than this bears its name [inches]."""
@@ -330,3 +335,14 @@ def _frame(
     axes.set_xlim(middle_x - ratio * height / 2.0, middle_x + ratio * height / 2.0)
     axes.set_ylim(middle_y - height / 2.0, middle_y + height / 2.0)
     axes.axis("off")
+
+
+def distance(box: Box, place: Place) -> float:
+    """How far a place is from a box [inches]."""
+    aside = max(box[0] - place[0], place[0] - box[1], 0.0)
+    return float(np.hypot(aside, max(box[2] - place[1], place[1] - box[3], 0.0)))
+
+
+def meet(one: Box, other: Box) -> bool:
+    """Whether two boxes have a place in common."""
+    return one[0] <= other[1] and other[0] <= one[1] and one[2] <= other[3] and other[2] <= one[3]

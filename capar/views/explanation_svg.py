@@ -5,7 +5,7 @@ from html import escape
 from textwrap import wrap
 
 from capar.model.observation import Observation, SegmentAddress
-from capar.views.reason_tree import note, reason_tree
+from capar.views.explanation_text import note, reason_tree
 from capar_rules.explain.explanation import Explanation, Reason
 
 ROW, LINE, INDENT, TEXT, STRIP = 20, 15, 18, 760, 240

@@ -1,1 +1,0 @@
-"""Neighbouring names: which come near a segment, and what decided against them."""
