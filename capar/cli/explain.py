@@ -47,12 +47,12 @@ def explain(
     plot: Annotated[
         Path | None,
         typer.Option(
-            help="Draw the quantities of SEGMENT's conditions over time to this .png, .svg or .pdf, "
-            "each with its limits and the intervals of the facts about it."
+            help="Draw the quantities of SEGMENT's conditions over time to this .png, .svg or "
+            ".pdf, each with its limits and the intervals of the facts about it."
         ),
     ] = None,
 ) -> None:
-    """Say why SEGMENT of CAPTURE has its name: its conditions, and the rules and facts behind it."""
+    """Say why SEGMENT of CAPTURE has its name: its conditions, and the rules behind it."""
     from capar.cli.output import check_writable
     from capar.pipelines.explanation import explained, segment_named
     from capar.views.explanation_text import explanation_lines, notices_about

@@ -16,6 +16,7 @@ from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from capar.views.explanation_plot import Panel, Plot
 from capar_rules.authoring.user_primitives import rules_of
+from capar_rules.borders.ticks import times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.explain.conditions import Measured
 from capar_rules.explain.explanation import Explainer, Explanation
@@ -216,7 +217,7 @@ def _panel(every: Sequence[Measured], series: Series, rate_hz: float) -> Panel:
     scale, unit = QUANTITIES[every[0].quantity].scale, every[0].unit
     limits = {(one.limit, one.limit_text) for one in every if one.limit is not None}
     marks = dict.fromkeys(
-        (series.frame(one.first, one.last) / rate_hz, one.value, one.value_text)
+        (_frame(one, one.value, series, rate_hz) / rate_hz, one.value, one.value_text)
         for one in every
         if one.value is not None
     )
@@ -231,3 +232,15 @@ def _panel(every: Sequence[Measured], series: Series, rate_hz: float) -> Panel:
         bars,
         series.held,
     )
+
+
+def _frame(one: Measured, value: float, series: Series, rate_hz: float) -> int:
+    """The frame at which a value is marked: where the curve has it, near the one that counts.
+
+    Rules compare some quantities at an event that is merged with the border.
+    """
+    counted = series.frame(one.first, one.last)
+    near = np.abs(series.frames - counted) <= times().merge_ms / 1000.0 * rate_hz
+    off = np.abs(series.values * QUANTITIES[one.quantity].scale - value)
+    off[~near | np.isnan(off)] = np.inf
+    return counted if np.isinf(off).all() else int(series.frames[np.argmin(off)])

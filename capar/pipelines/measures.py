@@ -25,19 +25,18 @@ from capar.model.geometry import from_mean, from_middle
 from capar.model.observation import Observation
 from capar_rules.explain.conditions import Condition, Measured
 from capar_rules.explain.quantities import QUANTITIES
-from extractors.bodies.body_geometry import BodyGeometry
+from extractors.bodies.bodies import BodyGeometry
 from extractors.calibration import thresholds_of
 from extractors.contact.contacts import points_apart
 from extractors.contact.proximity import separation
 from extractors.contact.touch_distances import touchable
 from extractors.measure import Measurements
 from extractors.motion.impacts import closing_speed
-from extractors.motion.leaning import lean, spin_steps
 from extractors.motion.object_motion import paces
-from extractors.motion.turning_points import most_turns
+from extractors.motion.phases import lean, most_turns, spin_steps
 from extractors.relations.arrangement import Pair
 from extractors.relations.places import turned_and_gone
-from extractors.signals.clock import frame_rate
+from extractors.signals.intervals import frame_rate
 
 MILLI = 1000.0
 

@@ -15,9 +15,8 @@ import clingo
 
 from capar.model.errors import RuleError
 from capar.model.facts import ALL_FACT_KINDS, Fact
-from capar_rules.engine.search import ERRORS_ONLY
-from capar_rules.engine.slicing import firing, towards
-from capar_rules.engine.syntax import Atom, Literal, Place, Signature, Statement
+from capar_rules.engine.solver import ERRORS_ONLY
+from capar_rules.engine.syntax import Atom, Literal, Place, Signature, Statement, firing, towards
 
 SIGNS = ("<=", ">=", "<", ">")
 

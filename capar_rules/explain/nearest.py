@@ -7,8 +7,17 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
-from capar_rules.engine.slicing import FITS, named_node, nodes, nodes_read
-from capar_rules.engine.syntax import Literal, Signature, Statement, parse_text, split_arguments
+from capar_rules.engine.syntax import (
+    FITS,
+    Literal,
+    Signature,
+    Statement,
+    named_node,
+    nodes,
+    nodes_read,
+    parse_text,
+    split_arguments,
+)
 from capar_rules.explain.conditions import Condition, Conditions
 from capar_rules.explain.sentences import RuleBase, Sentences, pairs_of, parsed
 

@@ -7,10 +7,16 @@ from functools import cache
 from capar.model.errors import RuleError, UnknownNameError
 from capar.model.facts import Fact, program
 from capar.model.observation import Segment
-from capar_rules.engine.search import Atom, optima, worlds
-from capar_rules.engine.slicing import heads_of, signatures_below, towards
-from capar_rules.engine.solver import rule_file
-from capar_rules.engine.syntax import Signature, Statement, parse, split_arguments
+from capar_rules.engine.solver import Atom, optima, rule_file, worlds
+from capar_rules.engine.syntax import (
+    Signature,
+    Statement,
+    heads_of,
+    parse,
+    signatures_below,
+    split_arguments,
+    towards,
+)
 from capar_rules.explain.explanation import Explainer
 from capar_rules.explain.sentences import Scene
 from capar_rules.lint.audit import physics, words_of

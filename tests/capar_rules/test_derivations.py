@@ -3,7 +3,7 @@
 import pytest
 
 from capar.model.facts import Tag
-from capar_rules.engine.search import worlds
+from capar_rules.engine.solver import worlds
 from capar_rules.engine.syntax import parse_text
 from capar_rules.explain.derivations import NUMBERS, Grounds, Numbering, Recorder
 

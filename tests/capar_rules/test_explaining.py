@@ -21,8 +21,8 @@ from capar.model.facts import (
 from capar.pipelines.explanation import Explained, explained
 from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import profile
-from capar_rules.engine.search import worlds
-from capar_rules.engine.slicing import heads_of, named_node, towards
+from capar_rules.engine.solver import worlds
+from capar_rules.engine.syntax import heads_of, named_node, towards
 from capar_rules.explain.conditions import Condition
 from capar_rules.explain.explanation import Explainer, Explanation, rule_base
 from capar_rules.explain.nearest import FEATURE, forms_of

@@ -27,8 +27,8 @@ def test_each_value_of_a_condition_is_marked_on_the_curve_of_its_quantity(seen: 
                     assert (one.label, one.value_text) in marks
         for panel in plot.panels:
             for time, value, _ in panel.marks:
-                near = abs(panel.times - time) < 0.02
-                assert panel.values[near] == pytest.approx(value, abs=2.0 + 0.02 * abs(value))
+                on_curve = panel.values[abs(panel.times - time).argmin()]
+                assert on_curve == pytest.approx(value, abs=0.3 + 0.05 * abs(value))
 
 
 def test_limits_and_intervals_of_facts_are_drawn(seen: Explained):
