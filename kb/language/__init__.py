@@ -6,4 +6,4 @@ from kb.language.instruction import Instruction as Instruction
 from kb.language.instruction import Plan as Plan
 from kb.language.parse import parse as parse
 from kb.language.question import Question as Question
-from kb.language.sentence import sentence as sentence
+from kb.language.vocabulary import sentence as sentence

@@ -1,12 +1,237 @@
 """Questions about what was done, as SPARQL over an Actionary."""
 
-from collections.abc import Sequence
+import json
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from importlib.resources import files
 from typing import TypeVar
 
-from kb.language.instruction import Instruction
-from kb.language.querying import never_sparql, question_sparql
+from kb.language.instruction import GAP, Condition, Instruction, Relation
+from kb.lexicon.english import PEOPLE
+from kb.lexicon.wordnet import table
+
+SOURCES = ("off", "out of", "away from")
+"""Prepositions of what a thing is taken from, as observations state them."""
+
+LIMBS = {
+    **{f"both_{many}": (f"left_{one}", f"right_{one}") for one, many in (("hand", "hands"),)},
+    "both_feet": ("left_foot", "right_foot"),
+    "hand": ("left_hand", "right_hand"),
+    "foot": ("left_foot", "right_foot"),
+}
+"""End-effectors that a word for several, or for either, may name."""
+
+ALIKE = {"next to": "beside", "close to": "near", "inside": "in", "on top of": "on"}
+"""Prepositions of people in the words of the rules."""
+
+TIMES = {
+    Relation.WHILE: "?start < ?end@ && ?start@ < ?end",
+    Relation.WHEN: "?start < ?end@ && ?start@ < ?end",
+    Relation.BEFORE: "?start < ?start@",
+    Relation.AFTER: "?start >= ?end@",
+    Relation.UNTIL: "?start < ?start@ && ?end >= ?start@",
+    Relation.WITHOUT: "?start@ >= ?start && ?performer@ = ?performer",
+    Relation.WHERE: "true",
+    Relation.SAME_AGENT: "?performer@ = ?performer",
+}
+"""What each relation demands of two segments."""
+
+
+def question_sparql(
+    about: Instruction, *, answers: str, variables: Iterable[str], order: str, counted: bool
+) -> str:
+    """The query of what fits an instruction.
+
+    Args:
+        about: What is asked about, with ``?`` for an object that is asked for.
+        answers: What is selected.
+        variables: The variables that must be bound beside those of every segment.
+        order: How rows are sorted or grouped.
+        counted: Whether it is asked how often.
+    """
+    lines = [*_segment(about, "", counted=counted), *_bound(about, set(variables))]
+    for index, condition in enumerate(about.circumstances.conditions, 1):
+        lines += _condition(condition, about, f"_{index}")
+    told = {"answers": answers, "segments": "\n".join(lines), "order": order}
+    query = _fragment("question")
+    for name, text in told.items():
+        query = query.replace(f"{{{{{name}}}}}", text)
+    return query
+
+
+def never_sparql(about: Instruction, asked: str) -> str:
+    """Which objects or performers nothing that fits an instruction is told of."""
+    lines = [
+        f"  ?seen a capar:Observation ; {_PATHS[asked]} ?{asked} .",
+        "  MINUS {",
+        *_segment(about, "", counted=False),
+        *_bound(about, {asked}),
+        "  }",
+    ]
+    told = {
+        "answers": f"?{asked} ?observation",
+        "segments": "\n".join(lines),
+        "order": f"ORDER BY ?observation ?{asked}",
+    }
+    query = _fragment("question")
+    for name, text in told.items():
+        query = query.replace(f"{{{{{name}}}}}", text)
+    return query
+
+
+_PATHS = {
+    "object": "capar:object/capar:name",
+    "performer": "capar:segment/capar:ofLink/capar:agent/capar:name",
+    "ee": "capar:segment/capar:ee",
+}
+
+
+def _fragment(name: str, suffix: str = "") -> str:
+    text = (files("kb") / "language" / "sparql" / f"{name}.rq").read_text(encoding="utf-8")
+    return text.replace("@", suffix).rstrip()
+
+
+def _segment(about: Instruction, suffix: str, *, counted: bool) -> Iterator[str]:
+    """The patterns of one segment; its variables end with the suffix."""
+    yield _fragment("segment", suffix)
+    yield from _actions(about, suffix, counted=counted)
+    for number, name in enumerate(about.call.objects):
+        if name and name != GAP:
+            role = ("dominant", "subordinate", "object")[min(number, 2)]
+            path = f"capar:{role}/(capar:name|(capar:kind/capar:isA/capar:name))"
+            yield f"  ?segment{suffix} {path} {_text(name)} ."
+    yield from _doer(about, suffix)
+    if about.call.purpose:
+        yield f"  ?segment{suffix} capar:purpose {_text(about.call.purpose)} ."
+    yield from _where(about, suffix)
+    yield from _when(about, suffix)
+
+
+def _actions(about: Instruction, suffix: str, *, counted: bool) -> Iterator[str]:
+    """The actions that answer: its own, those that specialise it, and those that entail it."""
+    action = about.call.action
+    if not action or action == "Be":
+        return
+    rows = [row for row in table("answered_by") if row["action"] == action]
+    instead = [row["answer"] for row in rows if row["ask"] == "times" and counted]
+    if instead:
+        yield _named(instead, suffix)
+        return
+    plain = [row["answer"] for row in rows if not row["ask"] and not row["fragment"]]
+    blocks = [_named([action, *plain], suffix)]
+    for row in rows:
+        if row["fragment"]:
+            named = _named([row["answer"]], suffix)
+            blocks.append(f"{named}\n{_fragment(row['fragment'], suffix)}")
+    yield "  {\n" + "\n  } UNION {\n".join(blocks) + "\n  }"
+
+
+def _named(actions: Iterable[str], suffix: str) -> str:
+    names = " ".join(map(_text, actions))
+    return (
+        f"  VALUES ?asked{suffix} {{ {names} }}\n"
+        f"  ?segment{suffix} (capar:action|capar:specialises)/capar:name ?asked{suffix} ."
+    )
+
+
+def _doer(about: Instruction, suffix: str) -> Iterator[str]:
+    if about.ee == "other_hand":
+        yield f"  FILTER(?ee{suffix} != ?ee)" if suffix else ""
+    elif about.ee and about.ee != "any_hand":
+        names = " ".join(map(_text, LIMBS.get(about.ee, (about.ee,))))
+        yield f"  VALUES ?ee{suffix} {{ {names} }}"
+        if about.ee.startswith("both_"):
+            yield _fragment("both_hands", suffix)
+    if about.agent:
+        same = f"?performer{suffix} = {_text(about.agent)}"
+        if about.agent.split("_")[-1] in PEOPLE:
+            nobody = f"NOT EXISTS {{ ?named{suffix} a capar:Agent ; capar:name "
+            yield f"  FILTER({same} || {nobody}{_text(about.agent)} }})"
+        else:
+            yield f"  FILTER({same})"
+
+
+def _where(about: Instruction, suffix: str) -> Iterator[str]:
+    """Where a body is or goes, as the observation states it."""
+    if about.source:
+        yield from _placement(SOURCES, _body(about), _text(about.source), f"source{suffix}", suffix)
+    named = {*about.call.objects, about.source}
+    for index, (preposition, place) in enumerate(about.circumstances.places):
+        if place not in named and place != "someone":
+            words = (ALIKE.get(preposition, preposition),)
+            body = _body(about)
+            yield from _placement(words, body, _text(place), f"place{suffix}_{index}", suffix)
+
+
+def _body(about: Instruction) -> str:
+    """The body that is somewhere: the object, the one that is asked for, or any."""
+    name = about.call.objects[0] if about.call.objects else ""
+    return "?object" if name == GAP else _text(name) if name else ""
+
+
+def _placement(
+    prepositions: Iterable[str], body: str, other: str, name: str, suffix: str
+) -> Iterator[str]:
+    yield f"  VALUES ?preposition_{name} {{ {' '.join(map(_text, prepositions))} }}"
+    yield f"  ?segment{suffix} capar:placement ?{name} ."
+    yield f"  ?{name} capar:preposition ?preposition_{name} ; capar:other {other} ."
+    if body:
+        yield f"  ?{name} capar:body {body} ."
+
+
+def _when(about: Instruction, suffix: str) -> Iterator[str]:
+    window = about.circumstances.window
+    if window is None:
+        return
+    first, last = window
+    if first < 0:
+        yield f"  ?seen capar:duration ?whole{suffix} ."
+        yield f"  FILTER(?end{suffix} > ?whole{suffix} - {-first!r})"
+        return
+    yield f"  FILTER(?end{suffix} >= {first!r})"
+    if not math.isinf(last):
+        yield f"  FILTER(?start{suffix} <= {last!r})"
+
+
+def _bound(about: Instruction, variables: set[str]) -> Iterator[str]:
+    """What binds the variables that are asked for."""
+    objects = about.call.objects
+    asked = objects.index(GAP) if GAP in objects else 0
+    state = about.call.action == "Be"
+    if "object" in variables and not (state and about.circumstances.places):
+        role = "subordinate" if asked == 1 else "dominant"
+        pattern = f"?segment capar:{role}/capar:name ?object ."
+        yield f"  {pattern}" if GAP in objects else f"  OPTIONAL {{ {pattern} }}"
+    if "action" in variables:
+        yield "  ?segment capar:action/capar:name ?action ."
+    if "place" in variables and state:
+        yield "  ?segment capar:placement ?being ."
+        yield f"  ?being capar:body {_body(about) or '?body'} ; capar:other ?place ;"
+        yield "    capar:preposition ?preposition ."
+    elif "place" in variables:
+        yield "  ?segment capar:subordinate/capar:name ?place ."
+    if "source" in variables:
+        yield "  VALUES ?taken { " + " ".join(map(_text, SOURCES)) + " }"
+        yield "  ?segment capar:placement ?leaving ; capar:dominant/capar:name ?left ."
+        yield "  ?leaving capar:preposition ?taken ; capar:body ?left ; capar:other ?source ."
+
+
+def _condition(condition: Condition, about: Instruction, suffix: str) -> Iterator[str]:
+    """Another segment of the same observation, and how the first stands to it."""
+    times = TIMES[condition.relation].replace("@", suffix)
+    lines = [*_segment(condition.about, suffix, counted=False), f"  FILTER({times})"]
+    missing = condition.relation is Relation.WITHOUT
+    if missing != condition.about.circumstances.negated:
+        yield "  FILTER NOT EXISTS {\n" + "\n".join(lines) + "\n  }"
+    else:
+        yield from lines
+
+
+def _text(value: str) -> str:
+    return json.dumps(value, ensure_ascii=False)
+
 
 Row = TypeVar("Row")
 

@@ -1,15 +1,266 @@
-"""Noun phrases: objects, hands and people, by name or by a pronoun."""
+"""Noun phrases, and times, counts and manners, as they stand in a sentence."""
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass, field, replace
 
+from kb.language.cursor import ARTICLES, Cursor
 from kb.language.instruction import Window
 from kb.language.phrases import PACKS
-from kb.language.reading.adjuncts import around, window_at
-from kb.language.reading.function_words import first_words, is_next, number_at, of_class
-from kb.language.reading.reader import RELATIVES, Reader
-from kb.language.tokens import ARTICLES
-from kb.language.vocabulary import SIDES
-from kb.lexicon.english import PEOPLE, ordinal
+from kb.language.vocabulary import (
+    SIDES,
+    VerbEntries,
+    Vocabulary,
+    first_words,
+    is_manner,
+    is_next,
+    number_at,
+    of_class,
+    prepositions,
+    silent,
+)
+from kb.lexicon.english import PEOPLE, Form, ordinal
+
+STOPS = (
+    *("determiner", "person", "pronoun", "auxiliary", "negation", "particle", "manner"),
+    *("relation", "count", "preposition"),
+)
+"""Classes of words that no name of an object goes on with."""
+
+CONNECTIVES = frozenset({",", ".", ";", ":", "(", ")", "and", "or", "but", "then", "to", ""})
+RELATIVES = frozenset({"who", "that", "which", "what", "where", "whose", "whom"})
+
+
+@dataclass
+class Reader:
+    """What is read, by what, and what was spoken of before."""
+
+    cursor: Cursor
+    words: Vocabulary
+    verbs: VerbEntries
+    thing: str = ""
+    """What ``it`` is."""
+
+    several: tuple[str, ...] = ()
+    """What ``them`` are."""
+
+    taken: tuple[str, str] = ("", "")
+    """What was handled last, and with which hand."""
+
+    place: str = ""
+    """Where ``there`` is."""
+
+    limb: str = ""
+    agent: str = ""
+    gap: bool = False
+    """Whether a preposition may stand without its object: ``what did she look at``."""
+
+    limit: int = 1_000_000
+    """The word at which a name ends at the latest."""
+
+    literals: frozenset[str] = frozenset()
+    """Words that belong to the verb that is being read: ``go`` of ``let go``."""
+
+    def stops(self, ahead: int = 0) -> bool:
+        """Whether the next word cannot be a part of a name."""
+        cursor = self.cursor
+        word = cursor.peek(ahead)
+        if cursor.at + ahead >= self.limit:
+            return True
+        if word in CONNECTIVES or word in RELATIVES or word.startswith('"') or is_manner(word):
+            return True
+        start = cursor.at
+        cursor.at += ahead
+        found = any(cursor.longest(of_class(each)) is not None for each in STOPS)
+        cursor.at = start + ahead
+        found = found or cursor.longest(prepositions()) is not None
+        cursor.at = start
+        return found
+
+    def verb_forms(self, ahead: int = 0) -> frozenset[Form]:
+        """The forms of verbs that the next word may be."""
+        return frozenset(form for _, form in self.verbs.lemmas(self.cursor.peek(ahead)))
+
+    def verb_ahead(self) -> bool:
+        """Whether the next word is a form of a verb that primitives are said with."""
+        found = self.verbs.lemmas(self.cursor.peek())
+        return any(lemma in self.verbs.ways for lemma, _ in found)
+
+    def finite_ahead(self) -> bool:
+        """Whether a verb of a sentence with a subject comes next, after adverbs."""
+        ahead = 0
+        while is_manner(self.cursor.peek(ahead)) or self.cursor.peek(ahead) in {"then", "never"}:
+            ahead += 1
+        if self.cursor.peek(ahead) in {word[0] for word in of_class("auxiliary")}:
+            return True
+        return bool(self.verb_forms(ahead) & {Form.BASE, Form.PAST, Form.THIRD})
+
+
+@dataclass
+class Adjuncts:
+    """What was read beside objects; it grows while a clause is read."""
+
+    manner: list[str] = field(default_factory=list)
+    count: int = 0
+    duration_s: float = 0.0
+    window: Window | None = None
+
+
+def adjunct(cursor: Cursor, found: Adjuncts) -> bool:
+    """Read a time, a count or a manner if one comes next."""
+    return _window(cursor, found) or _count(cursor, found) or _manner(cursor, found)
+
+
+def window_at(cursor: Cursor) -> Window | None:
+    """Read a time in which something is, if one comes next: ``between 3 and 8 s``."""
+    start = cursor.at
+    found = _window_at(cursor)
+    if found is None:
+        cursor.at = start
+    return found
+
+
+def around(one: Window | None, other: Window | None) -> Window | None:
+    """The time from the beginning of the first to the end of the last [s]."""
+    if one is None or other is None:
+        return one or other
+    return min(one[0], other[0]), max(one[1], other[1])
+
+
+def _window(cursor: Cursor, found: Adjuncts) -> bool:
+    window = window_at(cursor)
+    if window is not None:
+        found.window = around(found.window, window)
+        return True
+    start = cursor.at
+    if cursor.accept("for"):
+        duration = _seconds(cursor)
+        if duration is not None:
+            found.duration_s = duration
+            return True
+    cursor.at = start
+    return False
+
+
+def _window_at(cursor: Cursor) -> Window | None:
+    if cursor.accept("("):
+        start = cursor.at
+        span = _span(cursor, "–", "-")
+        if span is None:
+            cursor.at = start
+            moment = _seconds(cursor)
+            span = None if moment is None else (moment, moment)
+        while span and _joined(cursor) and (more := _span(cursor, "–", "-")):
+            span = (span[0], more[1])
+        return span if span and cursor.accept(")") else None
+    if cursor.accept("between"):
+        return _span(cursor, "and")
+    for opening in (("in",), ("within",), ("during",), ("for",), ()):
+        start = cursor.at
+        if cursor.accept(*opening) and (found := _edge(cursor)) is not None:
+            return found
+        cursor.at = start
+    if cursor.accept("from"):
+        return _span(cursor, "to", "until", "till")
+    return _one_sided(cursor)
+
+
+def _joined(cursor: Cursor) -> bool:
+    """Whether another time of the same deed follows: ``(1–2 s and 3–4 s)``."""
+    return cursor.accept(",", "and") or cursor.accept(",") or cursor.accept("and")
+
+
+def _one_sided(cursor: Cursor) -> Window | None:
+    for words in (("after",), ("from",), ("since",), ("later", "than")):
+        start = cursor.at
+        if cursor.accept(*words) and (first := _seconds(cursor)) is not None:
+            cursor.accept("on") or cursor.accept("onwards")
+            return (first, math.inf)
+        cursor.at = start
+    for words in (("before",), ("until",), ("within",), ("by",), ("up", "to"), ("in",)):
+        start = cursor.at
+        if cursor.accept(*words) and (last := _seconds(cursor)) is not None:
+            return (0.0, last)
+        cursor.at = start
+    if cursor.accept("at"):
+        cursor.accept("second")
+        moment = _seconds(cursor)
+        return None if moment is None else (moment, moment)
+    return None
+
+
+def _edge(cursor: Cursor) -> Window | None:
+    """``the first four seconds``, and the last ones, counted from the end."""
+    cursor.accept("the")
+    for word in ("first", "last"):
+        if cursor.accept(word):
+            seconds = _seconds(cursor)
+            if seconds is None and (unit := cursor.longest(of_class("unit"))) is not None:
+                seconds = float(unit)
+            if seconds is not None:
+                return (0.0, seconds) if word == "first" else (-seconds, math.inf)
+    return None
+
+
+def _span(cursor: Cursor, *between: str) -> Window | None:
+    """Two numbers, of which the second has the unit."""
+    first = number_at(cursor)
+    if first is None:
+        return None
+    unit = cursor.longest(of_class("unit"))
+    if not any(cursor.accept(each) for each in between):
+        return None
+    last = number_at(cursor)
+    late = cursor.longest(of_class("unit")) or unit
+    if last is None or late is None:
+        return None
+    return (first * float(unit or late), last * float(late))
+
+
+def _seconds(cursor: Cursor) -> float | None:
+    count = number_at(cursor)
+    unit = cursor.longest(of_class("unit")) if count is not None else None
+    if count is None or unit is None:
+        return None
+    return count * float(unit)
+
+
+def _count(cursor: Cursor, found: Adjuncts) -> bool:
+    start = cursor.at
+    number = cursor.longest(of_class("count"))
+    if number is not None and not cursor.accept("more"):
+        cursor.accept("in", "all")
+        found.count = int(number)
+        return True
+    cursor.at = start
+    times = number_at(cursor)
+    if times is not None:
+        cursor.accept("more")
+        if cursor.accept("times") or cursor.accept("time"):
+            cursor.accept("in", "all") or cursor.accept("in", "total")
+            found.count = int(times)
+            return True
+    cursor.at = start
+    return False
+
+
+def _manner(cursor: Cursor, found: Adjuncts) -> bool:
+    start = cursor.at
+    place = cursor.longest(prepositions())
+    after_place, cursor.at = cursor.at, start
+    known = cursor.longest(of_class("manner"))
+    if known is not None and place is not None and after_place > cursor.at:
+        cursor.at = start
+        return False
+    if known is not None:
+        words = tuple(each.text.lower() for each in cursor.tokens[start : cursor.at])
+        if words not in silent("manner"):
+            found.manner.append(known)
+        return True
+    if is_manner(cursor.peek()):
+        found.manner.append(cursor.take().text.lower())
+        return True
+    return False
+
 
 MOST_ALIKE = 20
 """Of more things alike, none is read by its ordinal."""
