@@ -1,4 +1,4 @@
-"""Clauses with their subject, what helps the verb, and the verb phrase; also passive, and states."""
+"""Clauses: a subject, what helps the verb, and the verb phrase; also passive, and states."""
 
 from dataclasses import dataclass, replace
 

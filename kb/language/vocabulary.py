@@ -1,4 +1,4 @@
-"""What controlled English can express: verbs with their places, function words, objects and hands."""
+"""What controlled English can express: verbs and their objects, function words, hands."""
 
 import json
 import re
