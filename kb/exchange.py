@@ -25,12 +25,12 @@ from kb.corrections import claim_statements
 from kb.errors import ShapeError, StoreError
 from kb.lookup.agents import aliases, joined
 from kb.lookup.pars import observations
-from kb.store import names, sparql, updates, validation
+from kb.store import names, sparql, updates
 from kb.store import updates as writing
 from kb.store.answers import turtle
 from kb.store.statements import insertion
 from kb.store.stores import Store
-from kb.store.validation import inconsistencies
+from kb.store.validation import by_thing, faults
 from ontology import DATA, PREFIXES
 from ontology import files as ontology_files
 
@@ -238,12 +238,7 @@ def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -
     stated = list(quads)
     updates.check_version(source, updates.version_of(stated))
     taken = [each for each in stated if each.graph_name != names.GRAPHS["ontology"]]
-    triples = [each.triple for each in taken]
-    problems = (
-        *validation.violations(triples, elsewhere=lambda thing: _classes(store, thing)),
-        *validation.nlt_problems(triples),
-        *inconsistencies(triples),
-    )
+    problems = faults(by_thing(taken), elsewhere=lambda thing: _classes(store, thing))
     if problems:
         raise ShapeError(source, problems)
     seen = sorted(

@@ -10,7 +10,7 @@ from motions.doors import DOORS, open_and_close_door, open_and_close_drawer
 from capar.pipelines.observation import observe
 from kb.encode.observation import encode
 from kb.language.describe import describe
-from kb.store.validation import violations
+from kb.store.validation import by_thing, violations
 from ontology import CAPAR
 
 Act = Callable[..., motions.Trial]
@@ -43,7 +43,7 @@ def test_a_description_says_what_was_opened_and_closed() -> None:
 
 def test_the_actionary_keeps_the_hinge_with_its_range_and_residual() -> None:
     out = encode(observe(open_and_close_door(motions.TALL_MAN).capture))
-    assert not violations(out.quads)
+    assert not violations(out.things)
     text = "\n".join(map(str, out.quads))
     for term in (CAPAR.Guide, CAPAR.guideKind, CAPAR.opened, CAPAR.residual):
         assert str(term) in text

@@ -24,9 +24,9 @@ from capar.views.script import script
 from capar_rules.engine.profiles import profile
 from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary
+from kb.checks import check
 from kb.language.describe import describe
 from kb.reports.complex_actions import as_text
-from kb.store_checks import check
 
 BUNDLE = """\
 name = "handing_over"

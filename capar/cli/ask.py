@@ -187,7 +187,7 @@ def check(
     Every statement is read, and every observation checked: shapes, NLTs, references.
     """
     from kb import Actionary
-    from kb.store_checks import check as checked
+    from kb.checks import check as checked
 
     with Actionary.open(actionary, read_only=True) as opened:
         problems = checked(opened.store, full=shacl)
@@ -222,8 +222,7 @@ def serve(
     It runs until Ctrl-C; / lists what can be asked.
     """
     from kb import Actionary
-    from kb.serving.http_server import ActionaryServer
-    from kb.serving.service import Service
+    from kb.serving import ActionaryServer, Service
     from kb.store.stores import place
 
     where = place(actionary)

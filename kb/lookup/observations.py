@@ -13,7 +13,7 @@ from kb.lookup.pars import observations, recognise
 from kb.store import names, updates
 from kb.store.sparql import fill
 from kb.store.stores import Store, is_address
-from kb.store.validation import check_consistent, validate_statements
+from kb.store.validation import check_statements
 from ontology import CAPAR
 
 if TYPE_CHECKING:
@@ -50,9 +50,8 @@ def add(store: Store, observation: "Observation", *, name: str | None, replace: 
     recognised = recognise(store, observation.complex_par, besides=graph) or ""
     called = name or observation.complex_par.name or recognised or observation.capture
     statements = encode(observation, name=called)
-    validate_statements(observation.capture, statements)
+    check_statements(observation.capture, statements.things)
     quads = joined(statements.quads, aliases(store))
-    check_consistent(observation.capture, quads)
     if there or is_address(store.place):
         change = updates.replacement(graph, [*quads, *run(observation)])
         store.change(f"{run_removal(graph)} ;\n{change}")
@@ -83,7 +82,7 @@ def replace_all(store: Store, replacements: Iterable[tuple["Observation", str]])
     changes = []
     for observation, called in replacements:
         statements = encode(observation, name=called)
-        validate_statements(observation.capture, statements)
+        check_statements(observation.capture, statements.things)
         graph = names.observation(observation.capture)
         changes.append(run_removal(graph))
         changes.append(updates.replacement(graph, [*statements.quads, *run(observation)]))

@@ -1,21 +1,20 @@
-"""What statements must obey: the SHACL shapes, NLTs, words, times and units."""
+"""What statements must obey: the SHACL shapes, NLTs, words of the ontology, times and units."""
 
 import math
 import re
-from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
-from functools import cache, lru_cache
-from math import isclose, isfinite
-from typing import Any, TypeAlias
+from functools import cache
+from typing import TypeAlias
 
 from pyoxigraph import BlankNode, Literal, NamedNode, Quad, Triple
 
 from kb.errors import ShapeError
-from kb.store.statements import TYPE, LiteralError, Statements, nlt_of, numbers
+from kb.store.statements import TYPE, LiteralError, nlt_of, numbers
 from ontology import BASE, CAPAR, terms
 from ontology.files import classes_below, ontology_kinds, read, shape_files
+from ontology.namespace import RDF
 
 SH = "http://www.w3.org/ns/shacl#"
 UNIT_TOLERANCE = 1e-3
@@ -28,8 +27,14 @@ Kinds: TypeAlias = Callable[[NamedNode], Iterable[object]]
 Properties: TypeAlias = Mapping[NamedNode, Collection[Node]]
 """What is said of a thing, by property."""
 
-NLTS = (CAPAR.eeNlt, CAPAR.goalNlt, CAPAR.vNlt)
-"""The properties whose values are NLTs."""
+Things: TypeAlias = Mapping[NamedNode, Properties]
+"""What is said, by thing and property."""
+
+LARGEST_M = 50.0
+"""Nothing that somebody handles or stands on is larger than this [m]; 50 mm is, read as metres."""
+
+FRAMES_APART = 2.0
+"""How many frames, and a hundredth more, a time may lie from its frame, as clocks are uneven."""
 
 
 @dataclass(frozen=True)
@@ -103,10 +108,9 @@ def _rule(name: str, target: Node, said: dict[object, dict[str, list[Node]]], no
 
 
 def _list(said: dict[object, dict[str, list[Node]]], node: Node) -> Iterable[str]:
-    rdf = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
     while node in said:
-        yield str(said[node][rdf + "first"][0])
-        node = said[node][rdf + "rest"][0]
+        yield str(said[node][RDF + "first"][0])
+        node = said[node][RDF + "rest"][0]
 
 
 @cache
@@ -119,25 +123,25 @@ def _rules_of() -> Mapping[object, tuple[Rule, ...]]:
     return found
 
 
-def violations(
-    triples: Iterable[Triple | Quad], *, elsewhere: Kinds = lambda thing: ()
-) -> tuple[str, ...]:
-    """What is wrong with statements by our shapes, a line each, sorted.
+def faults(things: Things, *, elsewhere: Kinds = lambda thing: ()) -> tuple[str, ...]:
+    """What is wrong with statements, a line each, sorted: the thing, a colon, and the fault.
 
     Args:
-        triples: The statements.
+        things: The statements (``by_thing``).
         elsewhere: The classes of a thing that they refer to and do not state.
     """
-    said: dict[object, dict[NamedNode, list[Node]]] = {}
-    for triple in triples:
-        assert not isinstance(triple.object, Triple)
-        said.setdefault(triple.subject, {}).setdefault(triple.predicate, []).append(triple.object)
-    return _judged(said, elsewhere)
+    found = {*violations(things, elsewhere=elsewhere)}
+    for thing, said in things.items():
+        broken = [*_nlt_problems(said)]
+        if isinstance(thing, NamedNode):
+            whole = NamedNode(f"{thing.value.partition('#')[0]}#capture")
+            broken += [*_contradictions(said, things.get(whole, {})), *_unknown_words(said)]
+        found |= {f"{short(thing)}: {each}" for each in broken}
+    return tuple(sorted(found))
 
 
-def _judged(
-    things: Mapping[Any, Properties], elsewhere: Kinds = lambda thing: ()
-) -> tuple[str, ...]:
+def violations(things: Things, *, elsewhere: Kinds = lambda thing: ()) -> tuple[str, ...]:
+    """What is wrong with statements by our shapes alone, as lines."""
     asked = _rules_of()
 
     def kinds(thing: NamedNode) -> Iterable[object]:
@@ -145,13 +149,33 @@ def _judged(
         return stated or ontology_kinds().get(thing, ()) or elsewhere(thing)
 
     found = {
-        f"{_short(thing)}: {rule.message}"
+        f"{short(thing)}: {rule.message}"
         for thing, said in things.items()
         for kind in said.get(TYPE, ())
         for rule in asked.get(kind, ())
         if not _obeys(said, rule, kinds)
     }
     return tuple(sorted(found))
+
+
+def by_thing(statements: Iterable[Triple | Quad]) -> Things:
+    """Statements by what they are about, and by property."""
+    said: dict[NamedNode, dict[NamedNode, list[Node]]] = {}
+    for each in statements:
+        if not isinstance(each.subject, Triple) and not isinstance(each.object, Triple):
+            own = said.setdefault(each.subject, {})  # type: ignore[arg-type]
+            own.setdefault(each.predicate, []).append(each.object)
+    return said
+
+
+def check_statements(name: str, things: Things) -> None:
+    """Refuse statements that break the model.
+
+    Raises:
+        ShapeError: They do; it says where and how.
+    """
+    if found := faults(things):
+        raise ShapeError(f"observation {name!r}", found)
 
 
 def _obeys(said: Properties, rule: Rule, kinds: Kinds) -> bool:
@@ -196,107 +220,33 @@ def _number(value: Node) -> float:
         return math.nan
 
 
-def nlt_problems(triples: Iterable[Triple | Quad]) -> tuple[str, ...]:
-    """NLTs that are no finite place with a unit quaternion, a line each, sorted."""
-    found = []
-    for triple in triples:
-        if isinstance(triple.object, Literal) and triple.object.datatype == CAPAR.nlt:
-            problem = nlt_problem(triple.object.value)
-            if problem:
-                found.append(f"{_short(triple.subject)}: {problem}")
-    return tuple(sorted(found))
+def _nlt_problems(said: Properties) -> Iterator[str]:
+    """NLTs that are no finite place with a unit quaternion."""
+    for values in said.values():
+        for each in values:
+            if isinstance(each, Literal) and each.datatype == CAPAR.nlt:
+                try:
+                    norm = math.hypot(*nlt_of(each.value).orientation)
+                except LiteralError as error:
+                    yield str(error)
+                    continue
+                if abs(norm - 1.0) > UNIT_TOLERANCE:
+                    yield (
+                        f"NLT {each.value!r} has a quaternion of length {norm:.4g}; "
+                        "orientations have length 1"
+                    )
 
 
-def nlt_problem(text: str) -> str:
-    """What is wrong with an NLT's literal; empty if nothing is."""
-    try:
-        norm = math.hypot(*nlt_of(text).orientation)
-    except LiteralError as error:
-        return str(error)
-    if abs(norm - 1.0) > UNIT_TOLERANCE:
-        return f"NLT {text!r} has a quaternion of length {norm:.4g}; orientations have length 1"
-    return ""
+def _unknown_words(said: Properties) -> Iterator[str]:
+    """Properties and classes that look like ours and are not."""
+    words = [("property", each) for each in said]
+    words += [("class", each) for each in said.get(TYPE, ()) if isinstance(each, NamedNode)]
+    for kind, word in words:
+        if problem := _unknown(kind, word.value):
+            yield problem
 
 
-def validate_statements(name: str, statements: Statements) -> None:
-    """Refuse statements that break the model.
-
-    Raises:
-        ShapeError: They do; it says where and how.
-    """
-    nlts = [
-        f"{_short(thing)}: {problem}"
-        for thing, said in statements.things.items()
-        for each in NLTS
-        for value in said.get(each, ())
-        if (problem := nlt_problem(value.value))
-    ]
-    found = (*_judged(statements.things), *sorted(nlts))
-    if found:
-        raise ShapeError(f"observation {name!r}", found)
-
-
-def _short(node: object) -> str:
-    text = node.value if isinstance(node, NamedNode) else str(node)
-    return text.rsplit("/", 1)[-1]
-
-
-LARGEST_M = 50.0
-"""Nothing that somebody handles or stands on is larger than this [m]; 50 mm is, read as metres."""
-
-FRAMES_APART = 2.0
-"""How many frames, and a hundredth more, a time may lie from its frame, as clocks are uneven."""
-
-_COMPARED = frozenset(
-    {
-        *(CAPAR.start, CAPAR.end, CAPAR.duration, CAPAR.frames, CAPAR.rate, CAPAR.size),
-        *(CAPAR.firstFrame, CAPAR.lastFrame, CAPAR.frame, CAPAR.time),
-    }
-)
-"""The properties whose values must agree with others of the same thing, or with the capture."""
-
-Said = Mapping[NamedNode, list[object]]
-
-
-def inconsistencies(statements: Iterable[Triple | Quad]) -> tuple[str, ...]:
-    """What contradicts itself in statements, or uses a word of ours that there is not, sorted.
-
-    Each line begins with the thing, a colon and a space, as those of shapes do.
-    """
-    said: dict[str, dict[NamedNode, list[object]]] = defaultdict(lambda: defaultdict(list))
-    found = set()
-    for statement in statements:
-        if isinstance(statement.subject, NamedNode):
-            predicate, value = statement.predicate, statement.object
-            if predicate in _COMPARED:
-                said[statement.subject.value][predicate].append(value)
-            stated = value if predicate == TYPE and isinstance(value, NamedNode) else None
-            if words := _unknown_words(predicate, stated):
-                found |= {f"{_short(statement.subject.value)}: {word}" for word in words}
-    for thing, own in said.items():
-        capture = said.get(f"{thing.partition('#')[0]}#capture", {})
-        problems = (*_durations(own), *_clock(own), *_times(own, capture), *_sizes(own))
-        found |= {f"{_short(thing)}: {problem}" for problem in problems}
-    return tuple(sorted(found))
-
-
-def check_consistent(name: str, statements: Iterable[Triple | Quad]) -> None:
-    """Refuse an observation that contradicts itself.
-
-    Raises:
-        ShapeError: It does; it says where and how.
-    """
-    if found := inconsistencies(statements):
-        raise ShapeError(f"observation {name!r}", found)
-
-
-@lru_cache(maxsize=1024)
-def _unknown_words(predicate: NamedNode, stated: NamedNode | None) -> tuple[str, ...]:
-    """What is wrong with the property, and with the class, if they look like ours and are not."""
-    words = [("property", predicate), *([("class", stated)] if stated else [])]
-    return tuple(text for kind, word in words if (text := _unknown(kind, word.value)))
-
-
+@cache
 def _unknown(kind: str, iri: str) -> str:
     name = iri.removeprefix(BASE)
     if not iri.startswith(BASE) or name in terms():
@@ -306,66 +256,44 @@ def _unknown(kind: str, iri: str) -> str:
     return f"The ontology has no {kind} capar:{name}.{hint}"
 
 
-def _durations(said: Said) -> Iterator[str]:
-    start, end, duration = (
-        _number_consistency(said, e) for e in (CAPAR.start, CAPAR.end, CAPAR.duration)
-    )
-    if start is None or end is None or duration is None:
-        return
-    if not isclose(duration, end - start, rel_tol=1e-6, abs_tol=1e-6):
-        yield f"It lasts from {start:g} to {end:g} s, which is not {duration:g} s."
-
-
-def _clock(said: Said) -> Iterator[str]:
-    """What a capture says of its length in frames, in seconds, and of its rate."""
-    frames, rate, duration = (
-        _number_consistency(said, each) for each in (CAPAR.frames, CAPAR.rate, CAPAR.duration)
-    )
-    if frames is None or rate is None or duration is None:
-        return
-    if not _near(frames - 1, duration * rate):
-        yield f"{frames:g} frames at {rate:g} a second do not last {duration:g} s."
-
-
-def _times(said: Said, capture: Said) -> Iterator[str]:
-    """Times beside the frames that they are the times of, by the rate of the capture."""
-    rate = _number_consistency(capture, CAPAR.rate)
-    pairs = (
+def _contradictions(said: Properties, capture: Properties) -> Iterator[str]:
+    """Durations, times, frames and sizes that do not agree, by the rate of the capture."""
+    start, end, lasts = (_first(said, e) for e in (CAPAR.start, CAPAR.end, CAPAR.duration))
+    if abs(lasts - (end - start)) > max(1e-6, 1e-6 * abs(lasts)):
+        yield f"It lasts from {start:g} to {end:g} s, which is not {lasts:g} s."
+    frames, own_rate = _first(said, CAPAR.frames), _first(said, CAPAR.rate)
+    if _apart(frames - 1, lasts * own_rate):
+        yield f"{frames:g} frames at {own_rate:g} a second do not last {lasts:g} s."
+    rate = _first(capture, CAPAR.rate)
+    for frame_at, time_at in (
         (CAPAR.firstFrame, CAPAR.start),
         (CAPAR.lastFrame, CAPAR.end),
         (CAPAR.frame, CAPAR.time),
-    )
-    for frame_at, time_at in pairs:
-        frame, time = _number_consistency(said, frame_at), _number_consistency(said, time_at)
-        if rate and frame is not None and time is not None and not _near(frame, time * rate):
+    ):
+        frame, time = _first(said, frame_at), _first(said, time_at)
+        if _apart(frame, time * rate):
             yield f"Frame {frame:g} at {rate:g} a second is not at {time:g} s."
-
-
-def _near(frames: float, others: float) -> bool:
-    return abs(frames - others) <= FRAMES_APART + 0.01 * abs(frames)
-
-
-def _sizes(said: Said) -> Iterator[str]:
     for value in said.get(CAPAR.size, ()):
         try:
             lengths = numbers(value.value) if isinstance(value, Literal) else ()
         except LiteralError:
             continue
         if any(not 0.0 <= each <= LARGEST_M for each in lengths):
-            told = " x ".join(f"{each:g}" for each in lengths)
-            yield f"A size of {told} m is none of a thing; lengths are in metres."
+            stated = " x ".join(f"{each:g}" for each in lengths)
+            yield f"A size of {stated} m is impossible; lengths are in metres."
 
 
-def _number_consistency(said: Said, predicate: NamedNode) -> float | None:
-    for value in said.get(predicate, ()):
-        try:
-            number = float(value.value) if isinstance(value, Literal) else float("nan")
-        except ValueError:
-            continue
-        if isfinite(number):
-            return number
-    return None
+def _apart(frames: float, others: float) -> bool:
+    return abs(frames - others) > FRAMES_APART + 0.01 * abs(frames)
 
 
-def _short_consistency(iri: str) -> str:
-    return iri.rsplit("/", 1)[-1]
+def _first(said: Properties, predicate: NamedNode) -> float:
+    """The first finite number that a property has; else NaN, of which nothing is said."""
+    found = (_number(value) for value in said.get(predicate, ()) if isinstance(value, Literal))
+    return next((each for each in found if math.isfinite(each)), math.nan)
+
+
+def short(node: object) -> str:
+    """A thing's name within the data."""
+    text = node.value if isinstance(node, NamedNode) else str(node)
+    return text.rsplit("/", 1)[-1]

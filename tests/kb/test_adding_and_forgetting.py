@@ -13,10 +13,10 @@ from capar.model.observation import Observation
 from capar.model.par import Nlt
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
+from kb.checks import check
 from kb.encode.shared import ENDED
 from kb.errors import ExistsError, ShapeError
 from kb.store import names
-from kb.store_checks import check
 
 
 def statements(actionary: Actionary) -> set[str]:

@@ -8,11 +8,11 @@ from observations import drink_from_mug
 from capar.model.errors import UnknownNameError
 from capar.model.observation import Observation
 from kb.actionary import Actionary
+from kb.checks import by_shacl, check
 from kb.errors import StoreError
 from kb.exchange import bring_in
 from kb.lookup.agents import AGENT, OBJECT
 from kb.store.names import GRAPHS, shared
-from kb.store_checks import by_shacl, check
 
 
 def by(agent: str, capture: str) -> Observation:

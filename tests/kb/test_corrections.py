@@ -16,6 +16,7 @@ from capar.model.errors import UnknownNameError
 from capar.model.observation import SegmentAddress
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from kb.actionary import Actionary
+from kb.checks import check
 from kb.corrections import (
     Correction,
     Span,
@@ -30,7 +31,6 @@ from kb.errors import CorrectionError
 from kb.language.describe import describe as described
 from kb.lexicon.verbs import seen_in
 from kb.store import names
-from kb.store_checks import check
 from ontology import CAPAR
 
 CAPTURE = "DrinkFromMug"

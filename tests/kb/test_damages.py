@@ -8,9 +8,9 @@ from observations import drink_from_mug
 from pyoxigraph import NamedNode
 
 from kb.actionary import Actionary
+from kb.checks import check
 from kb.errors import ShapeError
 from kb.exchange import bring_in, export, read
-from kb.store_checks import check
 
 LINK = "<https://w3id.org/capar/data/observation/DrinkFromMug#link.right_hand>"
 KIND = "<https://w3id.org/capar/data/kind/mug>"

@@ -29,7 +29,7 @@ from capar.pipelines.observation import observe
 from kb.actionary import Actionary
 from kb.encode import encode
 from kb.encode.facts import in_order, stored_facts
-from kb.store.validation import violations
+from kb.store.validation import by_thing, violations
 
 MADE = (drink_from_mug(), pick_up_with_both_hands(), with_unknown())
 
@@ -143,4 +143,4 @@ def test_what_is_stored_of_a_trial_is_at_most_half_of_what_schema_2_stored(
         if any(part in str(each.subject) for part in ("#fact.", "#samples."))
     ]
     assert len(now) < 0.5 * fact_statements
-    assert violations(encode(drunk).quads) == ()
+    assert violations(by_thing(encode(drunk).quads)) == ()

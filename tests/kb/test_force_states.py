@@ -7,7 +7,7 @@ from observations import drink_from_mug
 from capar.model.json_form import from_json, to_json
 from capar.model.observation import ForceStyle
 from kb.actionary import Actionary
-from kb.store_checks import check
+from kb.checks import check
 
 FORCE = ForceStyle(
     object="mug",

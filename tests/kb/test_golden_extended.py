@@ -15,10 +15,10 @@ from observations import with_unknown
 from capar.cli.observe import _store
 from capar.model.observation import Observation
 from kb.actionary import Actionary
+from kb.checks import check
 from kb.exchange import bring_in, export, misplaced, read
 from kb.queries.questions import questions
 from kb.store.names import GRAPHS
-from kb.store_checks import check
 
 PERFORMERS = sorted(each.name for each in motions.PERFORMERS)
 FIRST = next(iter(motions.PERFORMERS)).name

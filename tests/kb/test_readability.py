@@ -8,9 +8,9 @@ from pyoxigraph import Literal, NamedNode, Quad
 from pyoxigraph import Store as Oxigraph
 
 from kb.actionary import Actionary
+from kb.checks import check
 from kb.errors import DamagedError
 from kb.store.stores import DATA_FOLDER, EmbeddedStore
-from kb.store_checks import check
 from ontology import CAPAR
 
 INDICES = 7

@@ -14,9 +14,7 @@ from pyoxigraph import QueryResultsFormat, RdfFormat, parse, parse_query_results
 from kb.actionary import Actionary
 from kb.exchange import FORMATS, export, read
 from kb.queries.questions import questions
-from kb.serving.http_server import ActionaryServer, is_loopback
-from kb.serving.messages import Request, Response
-from kb.serving.service import Service
+from kb.serving import ActionaryServer, Request, Response, Service, is_loopback
 
 TOKEN = "a secret"
 NAMES = "SELECT ?name { ?o a capar:Observation ; rdfs:label ?name }"
