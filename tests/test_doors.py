@@ -10,7 +10,7 @@ from motions.doors import DOORS, open_and_close_door, open_and_close_drawer
 from capar.pipelines.observation import observe
 from kb.encode.observation import encode
 from kb.language.describe import describe
-from kb.store.validation import by_thing, violations
+from kb.store.validation import violations
 from ontology import CAPAR
 
 Act = Callable[..., motions.Trial]
