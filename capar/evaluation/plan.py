@@ -309,7 +309,7 @@ class Pair:
     @property
     def name(self) -> str:
         """The take; where the bundle has none, its folder, or its file if that says more."""
-        file = find_place(self.capture).file
+        file = find_place(self.capture)[0]
         folder = file.resolve().parent.name
         return self.take or (folder if file.name == FILE else f"{folder}_{file.stem}")
 
@@ -401,7 +401,7 @@ def _couple(place: str, labels: str) -> list[Pair]:
     stem, _, pattern = place.rpartition(":")
     if not stem or not any(each in pattern for each in "*?["):
         words = take_words(place)
-        take = find_place(place).take
+        take = find_place(place)[1]
         own = words.get(take, {})
         return [Pair(place, _filled(labels, own), take, own)]
     words = take_words(stem)

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import RigidTransform
 
 from capar.model import geometry
 from capar.model.capture import (
+    UNITS,
     Agent,
     Capture,
     Conventions,
@@ -21,7 +21,7 @@ from capar.model.capture import (
     Purpose,
     Role,
     Sensor,
-    Shape,
+    ShapeSource,
     Source,
     Stream,
     TagObject,
@@ -29,7 +29,6 @@ from capar.model.capture import (
     notice,
 )
 from capar.model.errors import CaptureError, FileError, UnknownNameError
-from capar.model.geometry import runs
 from extractors.contact.contacts import with_meeting_hands
 from extractors.readers.bundle.bodies import (
     GAP_S,
@@ -41,7 +40,7 @@ from extractors.readers.bundle.bodies import (
     shared_clock,
     to_world,
 )
-from extractors.readers.bundle.shapes import Frame, assumed, build_shape, under_object
+from extractors.readers.bundle.shapes import Frame, build_shape, under_object
 from extractors.readers.files import source_of
 from extractors.readers.names import (
     WHOLES,
@@ -51,7 +50,6 @@ from extractors.readers.names import (
     without_side,
     words_of,
 )
-from extractors.readers.recording import UNITS
 from extractors.readers.registry import READER_OPTIONS, read_recording, reader_for
 from extractors.readers.schema.capture import (
     CaptureFile,
@@ -65,16 +63,415 @@ from extractors.readers.schema.capture import (
 )
 from extractors.readers.schema.entry import Location, expanded, read_toml, substituted, validated
 
+FILE = "capture.toml"
+Files = Mapping[str, WorldRecording]
+Times = Float[np.ndarray, "frames"]
+
 LINKS = {"hand": "arm", "foot": "leg", "head": "neck", "eyes": "neck"}
-"""The chain by the end-effectors that rules know."""
+"""The kinematic chain that an end-effector ends, where nobody says so, by those that rules know."""
 
 
-def chain_of(end_effector: str) -> str:
-    """The chain that an end-effector ends; of one that rules do not know, its own name."""
-    return LINKS.get(end_effector, end_effector)
+def find_place(place: str | Path) -> tuple[Path, str]:
+    """The capture.toml of a folder, a file, or a motion file beside it, and a ``:take``.
+
+    Raises:
+        FileError: There is none.
+    """
+    text = str(place)
+    path, take = Path(text), ""
+    if not path.exists() and ":" in text:
+        stem, _, take = text.rpartition(":")
+        path = Path(stem)
+    if path.is_dir():
+        path = path / FILE
+    elif path.is_file() and path.suffix != ".toml":
+        beside = path.parent / FILE
+        if not beside.is_file():
+            raise FileError(
+                text,
+                f"is no {FILE}, and there is none beside it.",
+                f"If it is a recording, write one with: capar new-capture {path} -o {beside}",
+            )
+        path = beside
+    if not path.is_file():
+        folder = path.parent if path.suffix else path
+        wanted = path if path.suffix == ".toml" else folder / FILE
+        raise FileError(
+            text,
+            f"no capture here: there is no file {path}.",
+            f"Write one with: capar new-capture FILES... -o {wanted}",
+        )
+    return path, take
 
 
-def many_sensors(entry: ManySensors, files: Mapping[str, WorldRecording]) -> list[SensorEntry]:
+def takes(place: str | Path) -> list[str]:
+    """The names of a bundle's takes; empty where it has one only."""
+    return list(take_words(place))
+
+
+def take_words(place: str | Path) -> dict[str, dict[str, str]]:
+    """What ``{...}`` stands for in each take of a bundle; empty where it has one take only."""
+    return _takes(*read_toml(find_place(place)[0]))
+
+
+def _takes(data: dict[str, Any], location: Location) -> dict[str, dict[str, str]]:
+    if "takes" not in data:
+        return {}
+    found = validated(Takes, {"takes": data["takes"]}, location).takes
+    words = [{"take": take} if isinstance(take, str) else take for take in found]
+    return {take["take"]: take for take in words}
+
+
+def open_bundle(place: str | Path) -> tuple[CaptureFile, str]:
+    """A capture.toml with the take's names filled in, validated, and the take.
+
+    Raises:
+        FileError: The bundle has several takes and none was named, or it is not valid TOML.
+        UnknownNameError: It has no such take.
+        CaparError: A key or value is not as the schema says.
+    """
+    file, take = find_place(place)
+    data, location = read_toml(file)
+    known = _takes(data, location)
+    if take and take not in known:
+        raise UnknownNameError("take", take, known, where=location.where("takes"))
+    if known and not take:
+        remedy = f"Name one of them: {place}:{next(iter(known))}"
+        raise FileError(location.where("takes"), "has several takes.", remedy)
+    return validated(CaptureFile, substituted(data, known.get(take, {})), location), take
+
+
+def read_capture(place: str | Path) -> Capture:
+    """The capture that a bundle describes.
+
+    Args:
+        place: A folder with a capture.toml, or that file, or a motion file beside it; then
+            ``:take`` where the bundle has several.
+
+    Raises:
+        CaparError: A file, body or value is not as the capture.toml says; it names the line.
+    """
+    document, take = open_bundle(place)
+    _check_names(document)
+    files = read_files(document)
+    group = _declared(document, files)
+    agents = [Agent(each.name, each.kind, each.measures) for each in document.performers]
+    contact = document.contact
+    folder = document.file_path.parent
+    name = document.name or folder.name.strip(".") or folder.resolve().name
+    own = source_of(document.file_path, "capture.toml", recorded_at=document.recorded or "")
+    own = replace(own, path=document.file_path.name)
+    try:
+        trial = Capture(
+            name=f"{name}_{take}" if take and take not in name else name,
+            sensors=group.sensors,
+            objects=group.objects,
+            agent=agents[0],
+            contact_tolerance_m=contact.tolerance_m if contact else None,
+            contact_dropout_s=contact.dropout_s if contact else None,
+            contact_minimum_s=contact.minimum_s if contact else None,
+            pivot_contacts=(*_pivots(document, group), *group.pivot_contacts),
+            purposes=tuple(
+                Purpose(p.purpose, p.action, p.object, p.goal) for p in document.purpose
+            ),
+            force_transfer=document.force_transfer,
+            sources=(
+                own,
+                *(file.source for file in files.values()),
+                *dict.fromkeys(group.sources),
+            ),
+            notices=(
+                *(notice for file in files.values() for notice in file.notices),
+                *group.notices,
+                *_gap_notices(group),
+            ),
+            others=tuple(agents[1:]),
+            conventions=group.conventions,
+        )
+        return with_meeting_hands(trial if document.parts == "apart" else grouped(trial))
+    except CaptureError as error:
+        raise CaptureError(f"{document.file_path}: {error}") from None
+
+
+def frame_times(place: str | Path, *, file: str = "") -> Times:
+    """When each frame of a source file was taken, in seconds of the capture's clock [s].
+
+    With it the frame numbers of labels become times, whatever rate the capture has.
+    """
+    document, _ = open_bundle(place)
+    files = read_files(document)
+    if file and file not in files:
+        raise document.unknown("file", file, files, "files")
+    recording = files[file or next(iter(files))]
+    times = recording.marker_times
+    if not recording.markers:
+        times = next(iter(recording.bodies.values())).times
+    return times - _declared(document, files).start_s
+
+
+def files_of(place: str | Path) -> tuple[dict[str, WorldRecording], float]:
+    """Everything in a capture's files in the world, and when in their time it begins [s].
+
+    Raises:
+        CaparError: As of ``read_capture``.
+    """
+    document, _ = open_bundle(place)
+    files = read_files(document)
+    return files, _declared(document, files).start_s
+
+
+def _check_names(document: CaptureFile) -> None:
+    """Check that sensors and objects have names of their own, and that named agents exist."""
+    agents = [each.name for each in document.performers]
+    for kind, entries in (("sensor", document.sensor), ("object", document.object)):
+        lines: dict[str, str] = {}
+        for entry in entries:
+            if entry.name in lines:
+                also = f"also {lines[entry.name]}."
+                raise entry.error("name", f"two {kind}s are called {entry.name!r}; {also}")
+            lines[entry.name] = entry.where("name")
+            if entry.agent and entry.agent not in agents:
+                raise entry.unknown("agent", entry.agent, agents, "agent")
+
+
+def read_files(document: CaptureFile) -> dict[str, WorldRecording]:
+    """Every file under ``[files]``, in the world.
+
+    Raises:
+        CaparError: One cannot be read, or its unit or axes are stated nowhere.
+    """
+    return {name: _read_file(document, name) for name in document.files}
+
+
+def _read_file(document: CaptureFile, name: str) -> WorldRecording:
+    entry = document.files[name]
+    if not isinstance(entry, MotionFile):
+        location = document.location.inside("files").inside(name)
+        entry = validated(MotionFile, {"path": entry}, location)
+    path = expanded(entry, "path")
+    options = entry.given(READER_OPTIONS)
+    for key in sorted(set(options) - (allowed := reader_for(path).options)):
+        raise entry.unknown(f"{reader_for(path).format} option", key, allowed, key)
+    if "arrays" in options:
+        options["arrays"] = [group.given() for group in options["arrays"]]
+    recording = read_recording(path, options=options)
+    recording = replace(recording, source=replace(recording.source, path=entry.path))
+    for joint, parent in entry.parents.items():
+        for each in (joint, parent):
+            if each not in recording.names:
+                raise entry.unknown("body", each, recording.names, f"parents.{joint}")
+    if entry.parents:
+        recording = replace(recording, parents=entry.parents)
+    unit = entry.unit or recording.unit_m or document.unit
+    up = entry.up or recording.up or document.up
+    for key, stated, example in (
+        ("unit", unit, f'unit = "mm" (or {", ".join(UNITS)})'),
+        ("up", up, 'up = "z" (or "y")'),
+    ):
+        if stated is None:
+            remedy = f"State it at the top: {example}."
+            raise document.error("files", f"no file states its {key}.", remedy)
+    world = to_world(
+        recording,
+        unit_m=UNITS[unit] if isinstance(unit, str) else float(unit or 0.0),
+        up=str(up),
+        left_handed=(entry.handedness or document.handedness) == "left",
+    )
+    for body, place in entry.places.items():
+        if body not in recording.names:
+            raise entry.unknown("body", body, recording.names, f"places.{body}")
+        if without_side(place) not in parts():
+            raise entry.unknown("place on the body", place, sorted(parts()), f"places.{body}")
+    return replace(world, places=entry.places)
+
+
+@dataclass(frozen=True)
+class _Declared:
+    """Everything that a capture consists of, but for its name and performer."""
+
+    sensors: tuple[Sensor, ...]
+    objects: tuple[TagObject, ...]
+    start_s: float
+    """The files' time that is the capture's zero [s]."""
+
+    notices: tuple[Notice, ...]
+    sources: tuple[Source, ...]
+    pivot_contacts: tuple[PivotContact, ...]
+    """Those that many objects declared at once share."""
+
+    conventions: Mapping[str, Conventions]
+    """By which each body's file was read, by the body's name."""
+
+
+def _declared(document: CaptureFile, files: Files) -> _Declared:
+    """The sensors and objects of a capture.toml, resampled to one clock.
+
+    Raises:
+        CaparError: A name is unknown, a body cannot be found, or clocks differ.
+    """
+    many = [(entry, *many_objects(entry, files)) for entry in document.objects_from]
+    sensors = [*document.sensor]
+    sensors += [each for entry in document.sensors_from for each in _many_sensors(entry, files)]
+    objects = [*document.object, *(each for _, found, _ in many for each in found)]
+    entries: list[SensorEntry | ObjectEntry] = [*sensors, *objects]
+    bodies: dict[int, Body] = {}
+    frames, shapes = [], []
+    for entry in entries:
+        frame = Frame()
+        if entry.body or entry.markers:
+            bodies[id(entry)] = body = find_body(entry, files)
+            frame = body.frame
+        frame.owner = entry.name
+        frames.append(frame)
+        shapes.append(build_shape(entry.shape, frame) if entry.shape else None)
+    streams = [body.stream for body in bodies.values()]
+    times, start = shared_clock(
+        streams,
+        rate_hz=document.rate_hz,
+        span_s=(document.from_s, document.to_s),
+        where=document.where(),
+    )
+
+    def stream(entry: SensorEntry | ObjectEntry) -> Stream:
+        own = bodies[id(entry)].stream
+        shifted = Stream(own.times - start, own.positions, own.orientations)
+        return resampled(shifted, times, extend=entry.extend)
+
+    made_sensors = tuple(
+        replace(_sensor(entry, stream(entry)), shape=shape)
+        for entry, shape in zip(sensors, shapes, strict=False)
+    )
+    built: dict[int, TagObject] = {}
+    for index in sorted(range(len(objects)), key=lambda n: bool(objects[n].top_at_bottom_of)):
+        entry, shape, derivation = objects[index], shapes[len(sensors) + index], ""
+        if id(entry) in bodies:
+            own = stream(entry)
+        elif entry.top_at_bottom_of:
+            pose, derivation = under_object(entry, shape, list(built.values()))
+            own = _still(times, *pose)
+        else:
+            own = _still(times, *_fixed_pose(entry))
+        assumed = "; ".join(filter(None, (entry.assumed, derivation)))
+        if shape and assumed:
+            shape = replace(shape, source=ShapeSource.ASSUMED)
+        built[index] = TagObject(
+            name=entry.name,
+            tag=TagType(entry.tag),
+            stream=own,
+            shape=shape,
+            kind=entry.kind or entry.name,
+            assumed=assumed,
+            deformable=entry.deformable,
+            motion_floor_m=entry.motion_floor_m,
+            mass_kg=entry.mass_kg,
+            agent=entry.agent,
+        )
+    return _Declared(
+        sensors=made_sensors,
+        objects=tuple(built[index] for index in range(len(objects))),
+        start_s=start,
+        notices=(
+            *(notice for body in bodies.values() for notice in body.notices),
+            *(notice for _, _, notices in many for notice in notices),
+            *(notice for frame in frames for notice in frame.notices),
+            *(notice for entry in document.sensor for notice in _doubtful_kind(entry)),
+            *rate_notices(streams, document.rate_hz),
+        ),
+        sources=tuple(source for frame in frames for source in frame.sources),
+        pivot_contacts=tuple(
+            PivotContact(entry.touched_by, each.name, entry.touched_within_m)
+            for entry, found, _ in many
+            if entry.touched_within_m is not None
+            for each in found
+        ),
+        conventions={
+            entry.name: bodies[id(entry)].conventions for entry in entries if id(entry) in bodies
+        },
+    )
+
+
+def _sensor(entry: SensorEntry, stream: Stream) -> Sensor:
+    if not any(entry.gaze):
+        raise entry.error("gaze", "gaze of no length.", "It is a direction in the sensor's frame.")
+    kind = entry.end_effector
+    chain = LINKS.get(kind, kind)
+    return Sensor(
+        name=entry.name,
+        end_effector=kind,
+        side=entry.side,
+        link=entry.link or (chain if entry.side == "none" else f"{entry.side}_{chain}"),
+        stream=stream,
+        role=Role(entry.role or ("attends" if kind in {"head", "eyes"} else "acts")),
+        gaze=(entry.gaze[0], entry.gaze[1], entry.gaze[2]),
+        eye=(entry.eye[0], entry.eye[1], entry.eye[2]),
+        agent=entry.agent,
+    )
+
+
+def _doubtful_kind(entry: SensorEntry) -> list[Notice]:
+    """A notice if an end-effector is almost, but not quite, one of those that rules know."""
+    stated = entry.end_effector
+    near = get_close_matches(stated.lower(), LINKS, n=1)
+    if not near or stated in LINKS:
+        return []
+    known = ", ".join(LINKS)
+    return [notice("end-effector-unknown", entry.name, stated=stated, known=known, near=near[0])]
+
+
+def _fixed_pose(
+    entry: ObjectEntry,
+) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "4"]]:
+    """The stated pose of an object in the world, whose z axis points up."""
+    position = entry.position or []
+    if len(position) != 3:
+        raise entry.error(
+            "position",
+            f"position = {position}; without top_at_bottom_of it takes x, y and z.",
+            "They are in the world, whose z axis points up whatever `up` says of the files.",
+        )
+    orientation = geometry.unit(np.array([entry.orientation or (1.0, 0.0, 0.0, 0.0)]))[0]
+    pose = geometry.transforms(np.array(position), orientation)
+    return pose.translation, pose.rotation.as_quat(scalar_first=True)
+
+
+def _still(
+    times: Times, position: Float[np.ndarray, "3"], orientation: Float[np.ndarray, "4"]
+) -> Stream:
+    frames = len(times)
+    return Stream(times, np.tile(position, (frames, 1)), np.tile(orientation, (frames, 1)))
+
+
+def _pivots(document: CaptureFile, group: _Declared) -> list[PivotContact]:
+    out = []
+    known = [each.name for each in (*group.sensors, *group.objects)]
+    for entry in document.pivot_contact:
+        for key in ("first", "second"):
+            if (name := getattr(entry, key)) not in known:
+                raise entry.unknown("body", name, known, key)
+        out.append(PivotContact(entry.first, entry.second, entry.distance_m))
+    return out
+
+
+def _gap_notices(group: _Declared) -> list[Notice]:
+    """A notice for every interval in which a body is lost for longer than is interpolated."""
+    out = []
+    for name, stream in {e.name: e.stream for e in (*group.sensors, *group.objects)}.items():
+        times, last = stream.times, len(stream.times) - 1
+        for first, end in geometry.runs(stream.lost):
+            if times[min(end + 1, last)] - times[max(first - 1, 0)] <= GAP_S:
+                continue
+            span = {"start_s": float(times[first]), "end_s": float(times[end])}
+            out.append(notice("long-gap", name, **({} if (first, end) == (0, last) else span)))
+    return out
+
+
+def _bodies(entry: ManySensors | ManyObjects, files: Files) -> Mapping[str, Any]:
+    if entry.file not in files:
+        raise entry.unknown("file", entry.file, files, "file")
+    return files[entry.file].bodies
+
+
+def _many_sensors(entry: ManySensors, files: Files) -> list[SensorEntry]:
     """A ``[[sensor]]`` for each body that a ``[[sensors_from]]`` stands for.
 
     Raises:
@@ -89,10 +486,13 @@ def many_sensors(entry: ManySensors, files: Mapping[str, WorldRecording]) -> lis
     out = []
     for name in names:
         called = entry.names.get(name, name)
-        side, stem = _side(called, entry.sides)
+        starts = ((side, s) for side, s in sorted(entry.sides.items()) if called.startswith(s))
+        side, start = next(starts, ("none", ""))
         values = {
             "name": constant_name(called),
-            "end_effector": entry.end_effectors.get(name, constant_name(stem)),
+            "end_effector": entry.end_effectors.get(
+                name, constant_name(called.removeprefix(start))
+            ),
             "side": side,
             "link": constant_name(called),
             "role": "attends" if name in entry.attends else "acts",
@@ -104,25 +504,7 @@ def many_sensors(entry: ManySensors, files: Mapping[str, WorldRecording]) -> lis
     return out
 
 
-def _side(name: str, sides: Mapping[Any, str]) -> tuple[str, str]:
-    """The side that a name's beginning states, and the name without it."""
-    for side, start in sorted(sides.items()):
-        if name.startswith(start):
-            return side, name.removeprefix(start)
-    return "none", name
-
-
-def _bodies(
-    entry: ManySensors | ManyObjects, files: Mapping[str, WorldRecording]
-) -> Mapping[str, Any]:
-    if entry.file not in files:
-        raise entry.unknown("file", entry.file, files, "file")
-    return files[entry.file].bodies
-
-
-def many_objects(
-    entry: ManyObjects, files: Mapping[str, WorldRecording]
-) -> tuple[list[ObjectEntry], list[Notice]]:
+def many_objects(entry: ManyObjects, files: Files) -> tuple[list[ObjectEntry], list[Notice]]:
     """An ``[[object]]`` for each body that an ``[[objects_from]]`` stands for.
 
     Several bodies of one kind are numbered in the order of their names. Bodies of no stated kind
@@ -151,216 +533,7 @@ def many_objects(
         own = {"name": f"{kind.name}{number}", "file": entry.file, "body": body}
         values = {**shared, "kind": kind.name, **kind.given(), **own}
         out.append(validated(ObjectEntry, values, kind.location))
-    return out, _left_out(left_out, len(bodies))
-
-
-def pivots(entry: ManyObjects, objects: list[ObjectEntry]) -> list[PivotContact]:
-    """The contacts by distance of the sensor in ``touched_by`` with every object."""
-    if entry.touched_within_m is None:
-        return []
-    return [PivotContact(entry.touched_by, each.name, entry.touched_within_m) for each in objects]
-
-
-def _left_out(names: list[str], bodies: int) -> list[Notice]:
-    if not names:
-        return []
-    return [notice("objects-left-out", *names, objects=bodies)]
-
-
-@dataclass(frozen=True)
-class Declared:
-    """Everything that a capture consists of, but for its name and performer."""
-
-    sensors: tuple[Sensor, ...]
-    objects: tuple[TagObject, ...]
-    start_s: float
-    """The files' time that is the capture's zero [s]."""
-
-    notices: tuple[Notice, ...]
-    sources: tuple[Source, ...]
-    pivot_contacts: tuple[PivotContact, ...]
-    """Those that many objects declared at once share."""
-
-    conventions: Mapping[str, Conventions]
-    """By which each body's file was read, by the body's name."""
-
-
-@dataclass(frozen=True)
-class _Tracked:
-    """The body and the shape of a sensor or object, before it is on the common clock."""
-
-    body: Body | None
-    shape: Shape | None
-    frame: Frame
-
-
-def declared(document: CaptureFile, files: Mapping[str, WorldRecording]) -> Declared:
-    """The sensors and objects of a capture.toml, resampled to one clock.
-
-    Raises:
-        CaparError: A name is unknown, a body cannot be found, or clocks differ.
-    """
-    many = [many_objects(entry, files) for entry in document.objects_from]
-    sensors = [*document.sensor]
-    sensors += [each for entry in document.sensors_from for each in many_sensors(entry, files)]
-    objects = [*document.object, *(each for found, _ in many for each in found)]
-    entries: list[SensorEntry | ObjectEntry] = [*sensors, *objects]
-    tracked = [_tracked(entry, files) for entry in entries]
-    streams = [each.body.stream for each in tracked if each.body]
-    times, start = shared_clock(
-        streams,
-        rate_hz=document.rate_hz,
-        span_s=(document.from_s, document.to_s),
-        where=document.where(),
-    )
-    count = len(sensors)
-    pairs = zip(document.objects_from, many, strict=True)
-    return Declared(
-        sensors=tuple(
-            _sensor(entry, each, times, start)
-            for entry, each in zip(sensors, tracked[:count], strict=True)
-        ),
-        objects=_objects(objects, tracked[count:], times, start),
-        start_s=start,
-        notices=(
-            *(notice for each in tracked if each.body for notice in each.body.notices),
-            *(notice for _, notices in many for notice in notices),
-            *(notice for each in tracked for notice in each.frame.notices),
-            *(notice for entry in document.sensor for notice in _doubtful_kind(entry)),
-            *rate_notices(streams, document.rate_hz),
-        ),
-        sources=tuple(source for each in tracked for source in each.frame.sources),
-        conventions={
-            entry.name: each.body.conventions
-            for entry, each in zip(entries, tracked, strict=True)
-            if each.body
-        },
-        pivot_contacts=tuple(pair for entry, (found, _) in pairs for pair in pivots(entry, found)),
-    )
-
-
-def _tracked(entry: SensorEntry | ObjectEntry, files: Mapping[str, WorldRecording]) -> _Tracked:
-    body = find_body(entry, files) if entry.body or entry.markers else None
-    frame = body.frame if body else Frame()
-    frame.owner = entry.name
-    return _Tracked(body, build_shape(entry.shape, frame) if entry.shape else None, frame)
-
-
-def _stream(body: Body, extend: str, times: Float[np.ndarray, "frames"], start: float) -> Stream:
-    own = body.stream
-    shifted = Stream(own.times - start, own.positions, own.orientations)
-    return resampled(shifted, times, extend=extend)
-
-
-def _sensor(
-    entry: SensorEntry, tracked: _Tracked, times: Float[np.ndarray, "frames"], start: float
-) -> Sensor:
-    assert tracked.body is not None
-    if not any(entry.gaze):
-        raise entry.error("gaze", "gaze of no length.", "It is a direction in the sensor's frame.")
-    kind = entry.end_effector
-    chain = chain_of(kind)
-    role = entry.role or ("attends" if kind in {"head", "eyes"} else "acts")
-    return Sensor(
-        name=entry.name,
-        end_effector=kind,
-        side=entry.side,
-        link=entry.link or (chain if entry.side == "none" else f"{entry.side}_{chain}"),
-        stream=_stream(tracked.body, entry.extend, times, start),
-        shape=tracked.shape,
-        role=Role(role),
-        gaze=(entry.gaze[0], entry.gaze[1], entry.gaze[2]),
-        eye=(entry.eye[0], entry.eye[1], entry.eye[2]),
-        agent=entry.agent,
-    )
-
-
-def _doubtful_kind(entry: SensorEntry) -> list[Notice]:
-    """A notice if an end-effector is almost, but not quite, one of those that rules know."""
-    near = get_close_matches(entry.end_effector.lower(), LINKS, n=1)
-    if not near or entry.end_effector in LINKS:
-        return []
-    return [
-        notice(
-            "end-effector-unknown",
-            entry.name,
-            stated=entry.end_effector,
-            known=", ".join(LINKS),
-            near=near[0],
-        )
-    ]
-
-
-def _objects(
-    entries: list[ObjectEntry],
-    tracked: list[_Tracked],
-    times: Float[np.ndarray, "frames"],
-    start: float,
-) -> tuple[TagObject, ...]:
-    """Every object in its order; those that are put under others are built after them."""
-    built: dict[int, TagObject] = {}
-    order = sorted(range(len(entries)), key=lambda index: bool(entries[index].top_at_bottom_of))
-    for index in order:
-        others = list(built.values())
-        built[index] = _object(entries[index], tracked[index], times, start, others)
-    return tuple(built[index] for index in range(len(entries)))
-
-
-def _object(
-    entry: ObjectEntry,
-    tracked: _Tracked,
-    times: Float[np.ndarray, "frames"],
-    start: float,
-    others: list[TagObject],
-) -> TagObject:
-    derivation, shape = entry.assumed, tracked.shape
-    if tracked.body is not None:
-        stream = _stream(tracked.body, entry.extend, times, start)
-    elif entry.top_at_bottom_of:
-        pose, derived = under_object(entry, shape, others)
-        stream = _still(times, *pose)
-        derivation = f"{derivation}; {derived}" if derivation else derived
-    else:
-        fixed = _fixed_pose(entry)
-        stream = _still(times, fixed.translation, fixed.rotation.as_quat(scalar_first=True))
-    return TagObject(
-        name=entry.name,
-        tag=TagType(entry.tag),
-        stream=stream,
-        shape=assumed(shape) if shape and derivation else shape,
-        kind=entry.kind or entry.name,
-        assumed=derivation,
-        deformable=entry.deformable,
-        motion_floor_m=entry.motion_floor_m,
-        mass_kg=entry.mass_kg,
-        agent=entry.agent,
-    )
-
-
-def _fixed_pose(entry: ObjectEntry) -> RigidTransform:
-    """The stated pose of an object in the world, whose z axis points up."""
-    position = entry.position or []
-    if len(position) != 3:
-        raise entry.error(
-            "position",
-            f"position = {position}; without top_at_bottom_of it takes x, y and z.",
-            "They are in the world, whose z axis points up whatever `up` says of the files.",
-        )
-    orientation = np.array([entry.orientation or (1.0, 0.0, 0.0, 0.0)])
-    return geometry.transforms(np.array(position), geometry.unit(orientation)[0])
-
-
-def _still(
-    times: Float[np.ndarray, "frames"],
-    position: Float[np.ndarray, "3"],
-    orientation: Float[np.ndarray, "4"],
-) -> Stream:
-    frames = len(times)
-    return Stream(times, np.tile(position, (frames, 1)), np.tile(orientation, (frames, 1)))
-
-
-Parts = list[tuple[int, Sensor]]
-"""Sensors of one end-effector, each with its rank in acting for it."""
+    return out, [notice("objects-left-out", *left_out, objects=len(bodies))] if left_out else []
 
 
 def grouped(capture: Capture) -> Capture:
@@ -370,381 +543,49 @@ def grouped(capture: Capture) -> Capture:
     are (``end_effector``) names a part of a hand or of a foot: a palm and its fingers, a heel and
     its toes. The one that stands for the whole, as a palm does, acts for all; if it is named after
     a part it is called after the whole, such as ``right_hand``. What a part touches the
-    end-effector touches; only its own motion, and that of what acts for it, are told.
+    end-effector touches; only its own motion, and that of what acts for it, are reported.
     """
-    for group in _groups(capture).values():
-        if len(group) > 1:
-            _, leader = min(group, key=lambda each: each[0])
-            capture = _joined(capture, leader, [each for _, each in group if each is not leader])
-    return capture
-
-
-def _groups(capture: Capture) -> dict[tuple[str, str, str], Parts]:
-    """The sensors of each agent's hands and feet."""
-    out: dict[tuple[str, str, str], Parts] = {}
+    groups: dict[tuple[str, str, str], list[tuple[int, Sensor]]] = {}
     for sensor in capture.sensors:
         found = part_of(sensor.end_effector)
         if found and sensor.side != "none" and sensor.role is Role.ACTS and not sensor.part_of:
             limb, rank = found
             _, named = part_of(sensor.name) or (limb, rank)
             key = (capture.agent_of(sensor), sensor.side, limb)
-            out.setdefault(key, []).append((max(rank, named), sensor))
-    return out
+            groups.setdefault(key, []).append((max(rank, named), sensor))
+    for (_, _, limb), group in groups.items():
+        if len(group) > 1:
+            _, leader = min(group, key=lambda each: each[0])
+            others = [sensor for _, sensor in group if sensor is not leader]
+            capture = _joined(capture, limb, leader, others)
+    return capture
 
 
-def _joined(capture: Capture, leader: Sensor, parts: Sequence[Sensor]) -> Capture:
-    limb, _ = part_of(leader.end_effector) or (leader.end_effector, 0)
-    name = _name(capture, leader, limb)
-    link = leader.link if leader.end_effector == limb else f"{leader.side}_{chain_of(limb)}"
-    whole = replace(leader, name=name, end_effector=limb, link=link)
-    changed = {leader.name: whole}
-    changed |= {each.name: replace(each, part_of=name, link=link) for each in parts}
+def _joined(capture: Capture, limb: str, leader: Sensor, others: Sequence[Sensor]) -> Capture:
+    name = f"{leader.side}_{limb}"
+    if leader.agent and capture.others:
+        name = f"{leader.agent}_{name}"
+    taken = leader.name in {each.name for each in capture.objects} or name in capture.bodies
+    if taken or set(words_of(leader.name)) & set(WHOLES[limb]):
+        name = leader.name
+    link = leader.link
+    if leader.end_effector != limb:
+        link = f"{leader.side}_{LINKS.get(limb, limb)}"
+    changed = {leader.name: replace(leader, name=name, end_effector=limb, link=link)}
+    changed |= {each.name: replace(each, part_of=name, link=link) for each in others}
+    renamed = {leader.name: name}
     pivots = tuple(
         replace(
             each,
-            first=name if each.first == leader.name else each.first,
-            second=name if each.second == leader.name else each.second,
+            first=renamed.get(each.first, each.first),
+            second=renamed.get(each.second, each.second),
         )
         for each in capture.pivot_contacts
     )
+    sensors = ", ".join(each.name for each in (leader, *others))
     return replace(
         capture,
         sensors=tuple(changed.get(each.name, each) for each in capture.sensors),
         pivot_contacts=pivots,
-        notices=(*capture.notices, _told(name, leader, parts)),
+        notices=(*capture.notices, notice("sensors-grouped", name, sensors=sensors)),
     )
-
-
-def _name(capture: Capture, leader: Sensor, limb: str) -> str:
-    """What the end-effector is called: its own name, or that of the whole where that is free."""
-    whole = f"{leader.side}_{limb}"
-    if leader.agent and capture.others:
-        whole = f"{leader.agent}_{whole}"
-    taken = leader.name in {each.name for each in capture.objects} or whole in capture.bodies
-    called_whole = set(words_of(leader.name)) & set(WHOLES[limb])
-    return leader.name if taken or called_whole else whole
-
-
-def _told(name: str, leader: Sensor, parts: Sequence[Sensor]) -> Notice:
-    names = [each.name for each in (leader, *parts)]
-    return notice("sensors-grouped", name, sensors=", ".join(names))
-
-
-FILE = "capture.toml"
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where a capture is described, and which take of it is meant."""
-
-    file: Path
-    take: str = ""
-
-
-def find_place(place: str | Path) -> Place:
-    """The capture.toml of a folder, a file, or a motion file beside it, and a ``:take``.
-
-    Raises:
-        FileError: There is none.
-    """
-    text = str(place)
-    path, take = Path(text), ""
-    if not path.exists() and ":" in text:
-        stem, _, take = text.rpartition(":")
-        path = Path(stem)
-    if path.is_dir():
-        path = path / FILE
-    elif path.is_file() and path.suffix != ".toml":
-        beside = path.parent / FILE
-        if not beside.is_file():
-            raise FileError(
-                text,
-                f"is no {FILE}, and there is none beside it.",
-                f"If it is a recording, write one with: capar new-capture {path} -o {beside}",
-            )
-        path = beside
-    if not path.is_file():
-        raise FileError(
-            text,
-            f"no capture here: there is no file {path}.",
-            f"Write one with: capar new-capture FILES... -o {_wanted(path)}",
-        )
-    return Place(path, take)
-
-
-def _wanted(path: Path) -> Path:
-    """Where a capture.toml ought to be, by a path that leads nowhere: a file or a folder."""
-    if path.suffix == ".toml":
-        return path
-    return (path.parent if path.suffix else path) / FILE
-
-
-def takes(place: str | Path) -> list[str]:
-    """The names of a bundle's takes; empty where it has one only."""
-    data, location = read_toml(find_place(place).file)
-    return list(_takes(data, location))
-
-
-def take_words(place: str | Path) -> dict[str, dict[str, str]]:
-    """What ``{...}`` stands for in each take of a bundle; empty where it has one take only."""
-    data, location = read_toml(find_place(place).file)
-    return _takes(data, location)
-
-
-def open_bundle(place: str | Path) -> tuple[CaptureFile, str]:
-    """A capture.toml with the take's names filled in, validated, and the take.
-
-    Raises:
-        FileError: The bundle has several takes and none was named, or it is not valid TOML.
-        UnknownNameError: It has no such take.
-        CaparError: A key or value is not as the schema says.
-    """
-    where = find_place(place)
-    data, location = read_toml(where.file)
-    known = _takes(data, location)
-    if where.take not in known and (where.take or known):
-        if where.take:
-            raise UnknownNameError("take", where.take, known, where=location.where("takes"))
-        raise FileError(
-            location.where("takes"),
-            "has several takes.",
-            f"Name one of them: {place}:{next(iter(known))}",
-        )
-    words = known.get(where.take, {})
-    return validated(CaptureFile, substituted(data, words), location), where.take
-
-
-def _takes(data: dict[str, Any], location: Location) -> dict[str, dict[str, str]]:
-    """Each take's name and what ``{...}`` stands for in it."""
-    if "takes" not in data:
-        return {}
-    found = validated(Takes, {"takes": data["takes"]}, location).takes
-    words = [{"take": take} if isinstance(take, str) else take for take in found]
-    return {take["take"]: take for take in words}
-
-
-__all__ = ["files_of", "find_place", "frame_times", "read_capture", "takes"]
-
-
-def read_capture(place: str | Path) -> Capture:
-    """The capture that a bundle describes.
-
-    Args:
-        place: A folder with a capture.toml, or that file, or a motion file beside it; then
-            ``:take`` where the bundle has several.
-
-    Raises:
-        CaparError: A file, body or value is not as the capture.toml says; it names the line.
-    """
-    document, take = open_bundle(place)
-    _check_names(document)
-    files = read_files(document)
-    group = declared(document, files)
-    agents = [Agent(each.name, each.kind, each.measures) for each in document.performers]
-    notices = [*(notice for file in files.values() for notice in file.notices), *group.notices]
-    contact = document.contact
-    try:
-        trial = Capture(
-            name=_name_capture_toml(document, take),
-            sensors=group.sensors,
-            objects=group.objects,
-            agent=agents[0],
-            contact_tolerance_m=contact.tolerance_m if contact else None,
-            contact_dropout_s=contact.dropout_s if contact else None,
-            contact_minimum_s=contact.minimum_s if contact else None,
-            pivot_contacts=(*_pivots(document, group), *group.pivot_contacts),
-            purposes=tuple(
-                Purpose(p.purpose, p.action, p.object, p.goal) for p in document.purpose
-            ),
-            force_transfer=document.force_transfer,
-            sources=_sources(document, files, group),
-            notices=(*notices, *_gap_notices(group.sensors, group.objects)),
-            others=tuple(agents[1:]),
-            conventions=group.conventions,
-        )
-        return with_meeting_hands(trial if document.parts == "apart" else grouped(trial))
-    except CaptureError as error:
-        raise CaptureError(f"{document.file_path}: {error}") from None
-
-
-def _sources(
-    document: CaptureFile, files: Mapping[str, WorldRecording], group: Declared
-) -> tuple[Source, ...]:
-    """The capture.toml, the motion files, and each mesh once."""
-    own = source_of(document.file_path, "capture.toml", recorded_at=document.recorded or "")
-    own = replace(own, path=document.file_path.name)
-    return (own, *(file.source for file in files.values()), *dict.fromkeys(group.sources))
-
-
-def frame_times(place: str | Path, *, file: str = "") -> Float[np.ndarray, "frames"]:
-    """When each frame of a source file was taken, in seconds of the capture's clock [s].
-
-    With it the frame numbers of labels become times, whatever rate the capture has.
-    """
-    document, _ = open_bundle(place)
-    files = read_files(document)
-    if file and file not in files:
-        raise document.unknown("file", file, files, "files")
-    recording = files[file or next(iter(files))]
-    return _clock(recording) - declared(document, files).start_s
-
-
-def files_of(place: str | Path) -> tuple[dict[str, WorldRecording], float]:
-    """Everything in a capture's files in the world, and when in their time it begins [s].
-
-    Raises:
-        CaparError: As of ``read_capture``.
-    """
-    document, _ = open_bundle(place)
-    files = read_files(document)
-    return files, declared(document, files).start_s
-
-
-def _clock(recording: WorldRecording) -> Float[np.ndarray, "frames"]:
-    """The times of a file's frames [s]."""
-    if recording.markers:
-        return recording.marker_times
-    return next(iter(recording.bodies.values())).times
-
-
-def _name_capture_toml(document: CaptureFile, take: str) -> str:
-    folder = document.file_path.parent
-    name = document.name or folder.name.strip(".") or folder.resolve().name
-    return f"{name}_{take}" if take and take not in name else name
-
-
-def _check_names(document: CaptureFile) -> None:
-    """Check that sensors and objects have names of their own, and that named agents exist."""
-    agents = [each.name for each in document.performers]
-    for kind, entries in (("sensor", document.sensor), ("object", document.object)):
-        lines: dict[str, str] = {}
-        for entry in entries:
-            if entry.name in lines:
-                also = f"also {lines[entry.name]}."
-                raise entry.error("name", f"two {kind}s are called {entry.name!r}; {also}")
-            lines[entry.name] = entry.where("name")
-            if entry.agent and entry.agent not in agents:
-                raise entry.unknown("agent", entry.agent, agents, "agent")
-
-
-def read_files(document: CaptureFile) -> dict[str, WorldRecording]:
-    """Every file under ``[files]``, in the world.
-
-    Raises:
-        CaparError: One cannot be read, or its unit or axes are stated nowhere.
-    """
-    return {name: _read_file(document, name) for name in document.files}
-
-
-def _read_file(document: CaptureFile, name: str) -> WorldRecording:
-    entry = _entry(document, name)
-    path = expanded(entry, "path")
-    options = entry.given(READER_OPTIONS)
-    for key in sorted(set(options) - (allowed := reader_for(path).options)):
-        raise entry.unknown(f"{reader_for(path).format} option", key, allowed, key)
-    plain = {key: _plain(value) for key, value in options.items()}
-    recording = read_recording(path, options=plain)
-    recording = replace(recording, source=replace(recording.source, path=entry.path))
-    if entry.parents:
-        recording = replace(recording, parents=_parents(entry, recording.names))
-    world = to_world(
-        recording,
-        unit_m=_unit_m(document, entry, recording.unit_m),
-        up=_up(document, entry, recording.up),
-        left_handed=(entry.handedness or document.handedness) == "left",
-    )
-    return replace(world, places=_places(entry, recording.names)) if entry.places else world
-
-
-def _entry(document: CaptureFile, name: str) -> MotionFile:
-    """The table of a motion file, of which a path alone may be given."""
-    given = document.files[name]
-    if isinstance(given, MotionFile):
-        return given
-    location = document.location.inside("files").inside(name)
-    return validated(MotionFile, {"path": given}, location)
-
-
-def _plain(value: Any) -> Any:
-    """A validated value as the readers take it: tables as mappings."""
-    if isinstance(value, list):
-        return [_plain(item) for item in value]
-    return value.given() if hasattr(value, "given") else value
-
-
-def _unit_m(document: CaptureFile, entry: MotionFile, stated_m: float | None) -> float:
-    """Metres per unit of a file: as its own table, the file, or the general key says."""
-    if not entry.unit and stated_m:
-        return stated_m
-    unit = entry.unit or document.unit
-    if unit is None:
-        raise _unstated(document, "unit", f'unit = "mm" (or {", ".join(UNITS)})')
-    return UNITS[unit] if isinstance(unit, str) else unit
-
-
-def _up(document: CaptureFile, entry: MotionFile, stated: str | None) -> str:
-    """The upward axis of a file: as its own table, the file, or the general key says."""
-    up = entry.up or stated or document.up
-    if up is None:
-        raise _unstated(document, "up", 'up = "z" (or "y")')
-    return up
-
-
-def _unstated(document: CaptureFile, key: str, example: str) -> FileError:
-    remedy = f"State it at the top: {example}."
-    return document.error("files", f"no file states its {key}.", remedy)
-
-
-def _parents(entry: MotionFile, known: list[str]) -> dict[str, str]:
-    for joint, parent in entry.parents.items():
-        for name in (joint, parent):
-            if name not in known:
-                raise entry.unknown("body", name, known, f"parents.{joint}")
-    return entry.parents
-
-
-def _places(entry: MotionFile, known: list[str]) -> dict[str, str]:
-    for name, place in entry.places.items():
-        if name not in known:
-            raise entry.unknown("body", name, known, f"places.{name}")
-        if without_side(place) not in parts():
-            raise entry.unknown("place on the body", place, sorted(parts()), f"places.{name}")
-    return entry.places
-
-
-def _pivots(document: CaptureFile, group: Declared) -> list[PivotContact]:
-    out = []
-    known = [*(each.name for each in group.sensors), *(each.name for each in group.objects)]
-    for entry in document.pivot_contact:
-        for key in ("first", "second"):
-            if (name := getattr(entry, key)) not in known:
-                raise entry.unknown("body", name, known, key)
-        out.append(PivotContact(entry.first, entry.second, entry.distance_m))
-    return out
-
-
-def _gap_notices(sensors: tuple[Sensor, ...], objects: tuple[TagObject, ...]) -> list[Notice]:
-    """Every stretch in which a body is lost for longer than is interpolated."""
-    streams = {each.name: each.stream for each in sensors}
-    streams |= {each.name: each.stream for each in objects}
-    return [
-        _gap_notice(name, stream, gap)
-        for name, stream in streams.items()
-        for gap in _long_gaps(stream)
-    ]
-
-
-def _long_gaps(stream: Stream) -> list[tuple[int, int]]:
-    times, last = stream.times, len(stream.times) - 1
-    return [
-        (first, end)
-        for first, end in runs(stream.lost)
-        if times[min(end + 1, last)] - times[max(first - 1, 0)] > GAP_S
-    ]
-
-
-def _gap_notice(name: str, stream: Stream, gap: tuple[int, int]) -> Notice:
-    if gap == (0, len(stream.times) - 1):
-        return notice("long-gap", name)
-    start, end = stream.times[gap[0]], stream.times[gap[1]]
-    return notice("long-gap", name, start_s=float(start), end_s=float(end))

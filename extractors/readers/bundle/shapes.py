@@ -280,7 +280,7 @@ def _capsule(entry: CapsuleShape, frame: Frame) -> Described:
 def _capsules(entry: CapsulesShape, frame: Frame) -> Described:
     pairs = _pairs(entry, frame)
     points = {"": np.zeros(3)}
-    for name in {name for pair in pairs for name in pair} - {""}:
+    for name in sorted({name for pair in pairs for name in pair} - {""}):
         points[name] = _point(entry, "capsules", frame, name)
     meshes = [_capsule_between(points[a], points[b], entry.radius_m) for a, b in pairs]
     what = "a capsule" if len(pairs) == 1 else f"{len(pairs)} capsules"
