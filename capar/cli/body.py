@@ -233,7 +233,7 @@ def map_command(
     from dataclasses import replace
 
     from capar.cli.output import check_new_folder, print_json
-    from capar.cli.regenerate import quality_answer, tell_quality
+    from capar.cli.regenerate import print_quality, quality_answer
     from capar.pipelines.round_trips import SAME, body, observed_source
     from capar.regeneration import map_directly
     from capar.regeneration.captures import capture_of, read_completion, write_motion
@@ -251,6 +251,6 @@ def map_command(
     if json:
         print_json(quality_answer(motion, quality))
         return
-    tell_quality(motion, quality)
+    print_quality(motion, quality)
     if output:
         typer.echo(f"wrote {output}", err=True)
