@@ -1,25 +1,46 @@
 """The Actionary: observations kept as RDF, and the questions it answers (thesis 4.1.2)."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from kb.errors import StoreError
-from kb.lookup import observations
+from capar.model.errors import UnknownNameError
+from kb.encode.observation import encode, identity, run, run_removal
+from kb.errors import ExistsError, StoreError
+from kb.lookup.agents import aliases, joined
 from kb.lookup.locations import Knowledge
-from kb.lookup.observations import Added
+from kb.lookup.pars import recognise
 from kb.queries.questions import question
-from kb.store import sparql, updates
-from kb.store import updates as writing
+from kb.store import names, sparql, updates
 from kb.store.answers import Answer, Plain
-from kb.store.stores import Store, open_store
+from kb.store.stores import Store, is_address, open_store
 from kb.store.stores import place as default_place
+from kb.store.validation import check_statements
+from ontology import CAPAR
 
 if TYPE_CHECKING:
     from capar.model.observation import Observation
 
 TIME_LIMIT_S = 30.0
 """How long a user's query may take, unless the user says otherwise [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Added:
+    """The result of adding an observation."""
+
+    name: str
+    action: str
+    """What its complex action is called."""
+
+    recognised: str
+    """Under which name that action was known before; empty if it was not."""
+
+    replaced: bool
+    """Whether it took the place of an observation of the same capture."""
+
+    statements: int
 
 
 class Actionary(Knowledge):
@@ -88,9 +109,9 @@ class Actionary(Knowledge):
         self.store.refresh()
 
     def _prepare(self) -> None:
-        current = f"ASK {{ {writing.ontology_digest().triple} }}"
+        current = f"ASK {{ {updates.ontology_digest().triple} }}"
         if not self.store.ask(current).boolean:
-            self.store.change(writing.ontology_replacement())
+            self.store.change(updates.ontology_replacement())
             if not self.store.ask(current).boolean:
                 raise StoreError(
                     f"{self.store.place}: its default graph is not the union of the named ones; "
@@ -116,7 +137,28 @@ class Actionary(Knowledge):
             ExistsError: Another capture of the same name is there.
             ShapeError: It breaks the model.
         """
-        return observations.add(self.store, observation, name=name, replace=replace)
+        graph = names.observation(observation.capture)
+        there = self.store.ask(
+            f"SELECT ?identity WHERE {{ {graph} {CAPAR.identity} ?identity }}"
+        ).rows
+        same = there and getattr(there[0][0], "value", "") == identity(observation)
+        if there and not same and not replace:
+            raise ExistsError(
+                f"an observation {observation.capture!r} of another capture is in "
+                f"{self.store.place}; "
+                "give this capture another name, forget that one, or ask to replace it"
+            )
+        recognised = recognise(self.store, observation.complex_par, besides=graph) or ""
+        called = name or observation.complex_par.name or recognised or observation.capture
+        statements = encode(observation, name=called)
+        check_statements(observation.capture, statements.things)
+        quads = joined(statements.quads, aliases(self.store))
+        if there or is_address(self.store.place):
+            change = updates.replacement(graph, [*quads, *run(observation)])
+            self.store.change(f"{run_removal(graph)} ;\n{change}")
+        else:
+            self.store.insert([*quads, *run(observation)])
+        return Added(observation.capture, called, recognised, bool(there), len(quads))
 
     def forget(self, name: str) -> None:
         """Remove an observation, and everything that no other one mentions.
@@ -124,7 +166,11 @@ class Actionary(Knowledge):
         Raises:
             UnknownNameError: There is no observation of that name.
         """
-        observations.forget(self.store, name)
+        known = [each.name for each in self.observations()]
+        if name not in known:
+            raise UnknownNameError("observation", name, known, where=self.store.place)
+        graph = names.observation(name)
+        self.store.change(f"{run_removal(graph)} ;\n{updates.removal(graph)}")
 
     # Questions
 

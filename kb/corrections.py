@@ -13,7 +13,7 @@ from capar.model.par import ACTION_NAME, UNKNOWN
 from kb.errors import CorrectionError
 from kb.lookup.pars import observations
 from kb.store import names
-from kb.store.sparql import fill
+from kb.store.sparql import stored
 from kb.store.statements import LABEL, TYPE
 from kb.store.stores import EmbeddedStore, Store
 from ontology import CAPAR
@@ -24,33 +24,6 @@ BY = NamedNode(PROV + "wasAttributedTo")
 MADE = NamedNode(PROV + "generatedAtTime")
 LEAST_S = 1e-6
 """What is left of a segment counts from this duration on [s]."""
-
-_SEGMENTS = f"""SELECT ?ee ?start ?end ?name ?objects ?index
-WHERE {{ GRAPH @graph@ {{
-  ?segment a {CAPAR.Segment} ; {CAPAR.ee} ?ee ; {CAPAR.start} ?start ; {CAPAR.end} ?end ;
-    {CAPAR.index} ?index .
-  OPTIONAL {{ ?segment {CAPAR.action} ?action }}
-  OPTIONAL {{ ?segment {CAPAR.objects} ?objects }} }}
-  OPTIONAL {{ ?action {CAPAR.name} ?name }} }}
-ORDER BY ?ee ?start"""
-
-_CLAIMS = f"""SELECT ?ee ?start ?end ?name ?objects ?index ?by
-WHERE {{ GRAPH {GRAPH} {{
-  ?claim a {CAPAR.Correction} ; {CAPAR.ofCapture} @capture@ ; {CAPAR.ee} ?ee ;
-    {CAPAR.start} ?start ; {CAPAR.end} ?end ; {CAPAR.actionName} ?name ; {CAPAR.index} ?index ;
-    {BY}/{LABEL} ?by .
-  OPTIONAL {{ ?claim {CAPAR.objects} ?objects }} }} }}
-ORDER BY ?index"""
-
-_CORRECTED = (
-    f"SELECT DISTINCT ?capture WHERE {{ GRAPH {GRAPH} {{ ?claim {CAPAR.ofCapture} ?capture }} }}"
-)
-
-_STATED = f"""CONSTRUCT {{ ?thing ?property ?value }}
-WHERE {{ GRAPH {GRAPH} {{
-  ?claim {CAPAR.ofCapture} @capture@ .
-  {{ ?claim ?property ?value . BIND(?claim AS ?thing) }}
-  UNION {{ ?claim {BY} ?thing . ?thing ?property ?value }} }} }}"""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -104,7 +77,9 @@ def account(store: Store, capture: str) -> tuple[Span, ...]:
     Raises:
         UnknownNameError: Nothing of that capture is stored.
     """
-    spans = _spans(store.ask(fill(_SEGMENTS, graph=str(names.observation(capture)))).rows)
+    spans = _spans(
+        store.ask(stored("machine_segments", graph=str(names.observation(capture)))).rows
+    )
     if not spans:
         known = [each.name for each in observations(store)]
         raise UnknownNameError("observation", capture, known, where=store.place)
@@ -115,18 +90,18 @@ def account(store: Store, capture: str) -> tuple[Span, ...]:
 
 def claims(store: Store, capture: str) -> tuple[Span, ...]:
     """What persons say of a capture, in the order in which they said it."""
-    return _spans(store.ask(fill(_CLAIMS, capture=str(Literal(capture)))).rows)
+    return _spans(store.ask(stored("claims", capture=str(Literal(capture)))).rows)
 
 
 def corrected_captures(store: Store) -> tuple[str, ...]:
     """The captures of which persons say something."""
-    rows = store.ask(_CORRECTED).rows
+    rows = store.ask(stored("corrected_captures")).rows
     return tuple(sorted(each.value for (each,) in rows if isinstance(each, Literal)))
 
 
 def claim_statements(store: Store, capture: str) -> list[Quad]:
     """What is stored of the claims about a capture, and of the persons who make them."""
-    found = store.ask(fill(_STATED, capture=str(Literal(capture)))).triples or ()
+    found = store.ask(stored("claim_statements", capture=str(Literal(capture)))).triples or ()
     return [Quad(each.subject, each.predicate, each.object, GRAPH) for each in found]
 
 

@@ -25,8 +25,7 @@ from capar.model.errors import CaparError, UnknownNameError
 from kb.actionary import TIME_LIMIT_S, Actionary
 from kb.errors import LockedError, StoreError, TimeLimitError
 from kb.exchange import bring_in, export, read
-from kb.queries.formats import as_json
-from kb.queries.questions import Question, check_known, question, questions
+from kb.queries.questions import Question, as_json, check_known, question, questions
 from kb.store.answers import Answer, Found
 from kb.store.updates import SCHEMA
 from ontology.namespace import XSD

@@ -62,8 +62,7 @@ def query(
     """
     from capar.model.errors import UnknownNameError
     from kb import Actionary
-    from kb.queries.formats import FORMATS, listing
-    from kb.queries.questions import check_known, notes
+    from kb.queries.questions import FORMATS, check_known, listing, notes
     from kb.queries.questions import question as named
     from kb.store.sparql import unknown_terms
 
@@ -148,7 +147,7 @@ def _raw(question: str) -> str | None:
 
 
 def _print(answer: "Answer", chosen: str) -> None:
-    from kb.queries.formats import FORMATS, cells, header
+    from kb.queries.questions import FORMATS, cells, header
 
     if chosen != "table" or not sys.stdout.isatty():
         typer.echo(FORMATS[chosen](answer), nl=False)

@@ -26,7 +26,7 @@ from capar.model.facts import (
     Touching,
 )
 from kb.store import names
-from kb.store.sparql import fill
+from kb.store.sparql import stored
 from kb.store.statements import TYPE, PropertyValues, Statements, Value
 from kb.store.stores import Store
 from ontology import CAPAR
@@ -181,12 +181,6 @@ def overlap_s(of: Interval, others: Iterable[Interval]) -> float:
 
 # Back from a store
 
-_FACTS = f"""SELECT ?fact ?property ?value ?name
-WHERE {{
-  GRAPH @graph@ {{ @graph@ {CAPAR.fact} ?fact . ?fact ?property ?value }}
-  OPTIONAL {{ ?value {CAPAR.name} ?name }}
-}}"""
-
 
 def stored_facts(store: Store, name: str) -> tuple[Fact, ...]:
     """What was measured in the capture of an observation, in the order of the extractors.
@@ -198,7 +192,7 @@ def stored_facts(store: Store, name: str) -> tuple[Fact, ...]:
     kinds: dict[object, Any] = {}
     said: dict[object, dict[NamedNode, str]] = defaultdict(dict)
     for fact, key, value, called in store.ask(
-        fill(_FACTS, graph=str(names.observation(name)))
+        stored("facts", graph=str(names.observation(name)))
     ).rows:
         if key == TYPE and value in of_class:
             kinds[fact] = of_class[cast(NamedNode, value)]

@@ -26,8 +26,8 @@ from kb.lexicon.links import (
 from kb.lexicon.links import levin_classes as known_classes
 from kb.lexicon.verbnet import Frame, Predicate, VerbClass
 from kb.lexicon.wordnet import Sense, Synset, table, wordnet
+from kb.store.sparql import stored
 from kb.store.stores import Store
-from ontology import CAPAR, PREFIXES
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -51,25 +51,9 @@ class Case:
     name: str
 
 
-QUERY = f"""
-PREFIX rdfs: <{PREFIXES["rdfs"]}>
-SELECT ?name ?observation ?purpose (COUNT(DISTINCT ?segment) AS ?count) WHERE {{
-  ?seen a {CAPAR.Observation} ; rdfs:label ?observation ; {CAPAR.segment} ?segment .
-  ?segment a {CAPAR.Segment} .
-  OPTIONAL {{ ?segment {CAPAR.action}/{CAPAR.name} ?name }}
-  OPTIONAL {{
-    ?segment {CAPAR.purpose} ?purpose .
-    ?seen {CAPAR.fact} ?stated .
-    ?stated a {CAPAR.Intended} ; {CAPAR.purpose} ?purpose ; {CAPAR.actionName} ?doing .
-    FILTER (?doing = "any" || ?doing = ?name)
-  }}
-}} GROUP BY ?name ?observation ?purpose
-"""
-
-
 def seen_in(store: Store) -> tuple[Seen, ...]:
     """What every stored observation shows; segments that no rule names have an empty name."""
-    rows = store.ask(QUERY).plain()
+    rows = store.ask(stored("seen")).plain()
     return tuple(
         sorted(
             Seen(

@@ -1,7 +1,9 @@
 """Agents and kinds of objects: what is declared and what was seen of them."""
 
+import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from importlib.resources import files
 from typing import TypeAlias
 
 from pyoxigraph import Literal, NamedNode, Quad
@@ -12,7 +14,7 @@ from kb.encode import shared
 from kb.errors import StoreError
 from kb.lookup.pars import Pars
 from kb.store import names
-from kb.store.sparql import fill
+from kb.store.sparql import complete, stored
 from kb.store.statements import LABEL, TYPE, Statements, insertion
 from kb.store.stores import Store
 from ontology import CAPAR
@@ -23,6 +25,10 @@ AGENTS, OBJECTS, ACTIONS = (names.GRAPHS[each] for each in ("agents", "objects",
 SAME_AS = NamedNode(OWL + "sameAs")
 GENERAL = ("object", "thing")
 """What every kind is by default."""
+
+_PROFILES = (files("kb") / "store" / "queries" / "profiles.toml").read_text("utf-8")
+PROFILES: Mapping[str, Mapping[str, str]] = tomllib.loads(_PROFILES)
+"""The fields of agents and of kinds of objects, each with the pattern of its values."""
 
 Fields: TypeAlias = dict[str, tuple[str, ...]]
 """Values by field, in the order of the listing; no values where nothing is recorded."""
@@ -113,7 +119,7 @@ class Agents(Pars):
         agent, other = self._agent(first), self._agent(second)
         if agent == other:
             raise StoreError(f"{self.store.place}: {first!r} and {second!r} are one agent already")
-        self.store.change(fill(_JOIN, agent=str(agent), other=str(other)))
+        self.store.change(stored("join_agents", agent=str(agent), other=str(other)))
 
     def _agent(self, name: str) -> NamedNode:
         """The agent of a label, or of a name that an earlier one was joined under."""
@@ -132,11 +138,15 @@ class Agents(Pars):
         Raises:
             UnknownNameError: There is no such agent.
         """
-        return _profile(self.store, self._agent(name), AGENT)
+        return _profile(self.store, self._agent(name), PROFILES["agent"])
 
     def object_kinds(self) -> tuple[str, ...]:
         """Every kind of object that was observed or declared, by name."""
-        found = [each for (each,) in self.store.ask(_KINDS).rows if isinstance(each, NamedNode)]
+        found = [
+            each
+            for (each,) in self.store.ask(stored("object_kinds")).rows
+            if isinstance(each, NamedNode)
+        ]
         return tuple(names.last_word(each) for each in sorted(found, key=str))
 
     def object_profile(self, name: str) -> Fields:
@@ -147,12 +157,12 @@ class Agents(Pars):
         """
         node = names.shared("kind", name)
         if name not in (known := self.object_kinds()):
-            rows = self.store.ask(fill(_NAMED, name=str(Literal(name)))).rows
+            rows = self.store.ask(stored("kind_of_named", name=str(Literal(name)))).rows
             found = [each for (each,) in rows if isinstance(each, NamedNode)]
             if not found:
                 raise UnknownNameError("object", name, known, where=self.store.place)
             node = found[0]
-        return _profile(self.store, node, OBJECT)
+        return _profile(self.store, node, PROFILES["object"])
 
     def add_ability(
         self, action: str, *, agent: str = "", kind: str = "", conditions: Iterable[Condition] = ()
@@ -193,8 +203,8 @@ class Agents(Pars):
         """What an agent, or a kind of agent or object, was declared or observed to do."""
         kinds = " ".join(str(names.shared("kind", each)) for each in self.kinds_above(of))
         rows = [
-            *self.store.ask(fill(_ABLE_AGENT, name=str(Literal(of)))).texts(),
-            *self.store.ask(fill(_ABLE_KIND, kinds=kinds)).texts(),
+            *self.store.ask(stored("abilities_of_agent", name=str(Literal(of)))).texts(),
+            *self.store.ask(stored("abilities_of_kinds", kinds=kinds)).texts(),
         ]
         evidence = {"true": "declared", "false": "observed"}
         return tuple(sorted({Ability(action, evidence[declared]) for action, declared in rows}))
@@ -266,26 +276,10 @@ def _declared_agent(name: str) -> list[Quad]:
     ]
 
 
-_ALL_AGENTS = f"""SELECT ?agent ?name ?label
-WHERE {{ ?agent a {CAPAR.Agent} ; {CAPAR.name} ?name . OPTIONAL {{ ?agent {LABEL} ?label }} }}"""
-
-_ALIASES = f"SELECT ?other ?agent WHERE {{ GRAPH {AGENTS} {{ ?other {SAME_AS} ?agent }} }}"
-
-_JOIN = f"""DELETE {{ GRAPH ?graph {{ ?thing ?property @other@ }} }}
-INSERT {{ GRAPH ?graph {{ ?thing ?property @agent@ }} }}
-WHERE {{ GRAPH ?graph {{ ?thing ?property @other@ }} }} ;
-INSERT {{ GRAPH {AGENTS} {{ @agent@ ?property ?value }} }}
-WHERE {{ GRAPH {AGENTS} {{ @other@ ?property ?value }}
-  VALUES ?property {{ {CAPAR.capability} {CAPAR.nominal} {CAPAR.kind} }} }} ;
-DELETE WHERE {{ GRAPH {AGENTS} {{ @other@ ?property ?value }} }} ;
-INSERT DATA {{ GRAPH {AGENTS} {{
-  @other@ {SAME_AS} @agent@ ; {CAPAR.declared} true . @agent@ {CAPAR.declared} true . }} }}"""
-
-
 def _known_agents(store: Store) -> dict[str, NamedNode]:
     """Every agent by its label, which says of an unnamed one whose capture it is of."""
     found = {}
-    for agent, name, label in store.ask(_ALL_AGENTS).rows:
+    for agent, name, label in store.ask(stored("agents")).rows:
         word = label if isinstance(label, Literal) else name
         if isinstance(agent, NamedNode) and isinstance(word, Literal):
             found[word.value] = agent
@@ -296,7 +290,7 @@ def aliases(store: Store) -> Mapping[NamedNode, NamedNode]:
     """Agents that were joined to another one, each with that one."""
     direct = {
         other: agent
-        for other, agent in store.ask(_ALIASES).rows
+        for other, agent in store.ask(stored("aliases")).rows
         if isinstance(other, NamedNode) and isinstance(agent, NamedNode)
     }
 
@@ -317,115 +311,14 @@ def joined(quads: Sequence[Quad], by: Mapping[NamedNode, NamedNode]) -> list[Qua
     ]
 
 
-_ABLE_AGENT = f"""SELECT DISTINCT ?action ?declared
-WHERE {{
-  {{
-    ?who {CAPAR.capability} ?ability .
-    ?ability {CAPAR.action}/{CAPAR.name} ?action .
-    BIND(true AS ?declared)
-  }}
-  UNION
-  {{
-    ?link {CAPAR.agent} ?who .
-    ?segment {CAPAR.ofLink} ?link ; {CAPAR.action}/{CAPAR.name} ?action .
-    BIND(false AS ?declared)
-  }}
-  ?who {CAPAR.name} @name@ .
-}}"""
-
-_ABLE_KIND = f"""SELECT DISTINCT ?action ?declared
-WHERE {{
-  VALUES ?kind {{ @kinds@ }}
-  {{
-    ?kind {CAPAR.affords}/{CAPAR.name} ?action .
-    BIND(true AS ?declared)
-  }}
-  UNION
-  {{
-    ?kind {CAPAR.capability} ?ability .
-    ?ability {CAPAR.action}/{CAPAR.name} ?action .
-    BIND(true AS ?declared)
-  }}
-  UNION
-  {{
-    ?thing {CAPAR.kind} ?kind .
-    ?segment {CAPAR.object} ?thing ;
-      {CAPAR.action}/{CAPAR.name} ?action .
-    BIND(false AS ?declared)
-  }}
-}}"""
-
-
-_ABLE = f"{CAPAR.capability}/{CAPAR.action}/{CAPAR.name}"
-_NOMINAL = f"""?who {CAPAR.nominal} ?range .
-  ?range {CAPAR.parameter} ?parameter ; {CAPAR.mean} ?mean .
-  OPTIONAL {{ ?range {CAPAR.standardDeviation} ?deviation }}
-  BIND(COALESCE(CONCAT(" +- ", STR(?deviation)), "") AS ?spread)
-  BIND(CONCAT(?parameter, " ", STR(?mean), ?spread) AS ?value)"""
-_MEASURE = f"""?part {CAPAR.agent} ?who ; {CAPAR.measure} ?measure .
-  ?measure {CAPAR.name} ?parameter ; {CAPAR.value} ?number .
-  BIND(CONCAT(?parameter, " ", STR(?number)) AS ?value)"""
-_STYLE = f"""?style a {CAPAR.AgentStyle} ; {CAPAR.agent} ?who ; {CAPAR.actionName} ?action ;
-    {CAPAR.ee} ?ee . BIND(CONCAT(?action, " with ", ?ee) AS ?value)"""
-_PLACE = f"""?place a {CAPAR.ConstraintLocation} ; {CAPAR.goalKind}|{CAPAR.dominantKind} ?who ;
-    {CAPAR.actionName} ?action . OPTIONAL {{ ?place {CAPAR.purpose} ?purpose }}
-  BIND(IF(COALESCE(?purpose, "") != "", CONCAT(" for ", ?purpose), "") AS ?aim)
-  BIND(CONCAT(?action, ?aim) AS ?value)"""
-_PART = f"?thing {CAPAR.kind} ?who . "
-
-AGENT = {
-    "kind": f"{{ ?who {CAPAR.kind} ?value }} UNION {{ ?part a {CAPAR.Performer} ; "
-    f"{CAPAR.agent} ?who ; {CAPAR.kind} ?value }}",
-    "captures": f"?seen {CAPAR.performer}/{CAPAR.agent} ?who ; {CAPAR.capture}/{CAPAR.name} ?value",
-    "coordinate system": f"?who {CAPAR.coordinateSystem}/{CAPAR.position} ?value",
-    "state": f"?who {CAPAR.state} ?value",
-    "directions": f"?who {CAPAR.relativeDirection}|{CAPAR.specialDirection} ?value",
-    "grasp sites": f"?who {CAPAR.graspSite}/{CAPAR.position} ?value",
-    "capabilities (declared)": f"?who {_ABLE} ?value",
-    "capabilities (observed)": f"?segment {CAPAR.ofLink}/{CAPAR.agent} ?who ; "
-    f"{CAPAR.action}/{CAPAR.name} ?value",
-    "nominal value ranges": _NOMINAL,
-    "measures": _MEASURE,
-    "styles": _STYLE,
-}
-"""Fields of an agent (thesis Fig 4.2), each with the pattern that gives its values."""
-
-OBJECT = {
-    "more general": f"?who {CAPAR.isA} ?value . FILTER(?value != ?who)",
-    "captures": f"{_PART}?seen {CAPAR.object} ?thing ; {CAPAR.capture}/{CAPAR.name} ?value",
-    "objects": f"{_PART}?thing a {CAPAR.TagObject} ; {CAPAR.name} ?value",
-    "tag": f"{_PART}?thing {CAPAR.tag} ?value",
-    "size [m]": f"{_PART}?thing {CAPAR.size} ?value",
-    "shape": f"{_PART}?thing {CAPAR.shape} ?value",
-    "coordinate system": f"{_PART}?thing {CAPAR.coordinateSystem}/{CAPAR.position} ?value",
-    "state: damping": f"{_PART}?thing {CAPAR.state}/{CAPAR.dampingForce} ?value",
-    "state: restitution": f"{_PART}?thing {CAPAR.state}/{CAPAR.restitution} ?value",
-    "directions": f"{_PART}?thing {CAPAR.relativeDirection}|{CAPAR.specialDirection} ?value",
-    "grasp sites": f"{_PART}?thing {CAPAR.graspSite}/{CAPAR.position} ?value",
-    "actions (declared)": f"?who {CAPAR.affords}/{CAPAR.name}|{_ABLE} ?value",
-    "actions (observed)": f"{_PART}?segment a {CAPAR.Segment} ; {CAPAR.dominant} ?thing ; "
-    f"{CAPAR.action}/{CAPAR.name} ?value",
-    "constraint locations": _PLACE,
-}
-"""Fields of a kind of object (thesis Fig 4.3), each with the pattern that gives its values."""
-
-_KINDS = f"""SELECT DISTINCT ?kind
-WHERE {{ {{ ?thing a {CAPAR.TagObject} ; {CAPAR.kind} ?kind }}
-  UNION {{ ?kind a {CAPAR.ObjectKind} ; {CAPAR.declared} true .
-    FILTER NOT EXISTS {{ ?who a {CAPAR.Agent} ; {CAPAR.kind} ?kind }} }} }}"""
-
-_NAMED = f"SELECT DISTINCT ?kind WHERE {{ ?thing {CAPAR.name} @name@ ; {CAPAR.kind} ?kind }}"
-
-
 def _profile(store: Store, node: NamedNode, fields: Mapping[str, str]) -> Fields:
     return {field: _values(store, node, pattern) for field, pattern in fields.items()}
 
 
 def _values(store: Store, node: NamedNode, pattern: str) -> tuple[str, ...]:
     body = pattern.replace("?who", str(node))
-    rows = store.ask(
-        f"SELECT DISTINCT ?value ?label WHERE {{ {body} OPTIONAL {{ ?value {LABEL} ?label }} }}"
-    ).rows
+    labels = f"OPTIONAL {{ ?value {LABEL} ?label }}"
+    rows = store.ask(complete(f"SELECT DISTINCT ?value ?label {{ {body} {labels} }}")).rows
     return tuple(sorted({_word(label or value) for value, label in rows}))
 
 

@@ -8,7 +8,7 @@ from capar.model.locations import ConstraintLocation
 from capar.model.par import Nlt, Style
 from kb.lookup.agents import Agents
 from kb.store import names
-from kb.store.sparql import fill
+from kb.store.sparql import stored
 from kb.store.statements import nlt_of, numbers, path_of
 from ontology import CAPAR
 
@@ -84,7 +84,7 @@ class Knowledge(Agents):
         nodes = " ".join(str(names.shared("kind", each)) for each in order)
         nearest: dict[str, tuple[int, bool, str]] = {}
         for of, place, on in self.store.ask(
-            fill(_RANK, kinds=nodes, filters="\n  ".join(filters))
+            stored("ranked_locations", kinds=nodes, filters="\n  ".join(filters))
         ).rows:
             assert isinstance(of, NamedNode) and isinstance(on, Literal)
             mirror = side not in {None, on.value}
@@ -96,7 +96,7 @@ class Knowledge(Agents):
         best = sorted(nearest, key=lambda place: (*nearest[place][:2], place))[:most]
         if not best:
             return ()
-        answer = self.store.ask(fill(_DETAIL, places=" ".join(best)))
+        answer = self.store.ask(stored("locations", places=" ".join(best)))
         details = {
             str(row[0]): text[1:] for row, text in zip(answer.rows, answer.texts(), strict=True)
         }
@@ -119,7 +119,7 @@ class Knowledge(Agents):
         }
         filters = [f"?style {path} {Literal(word)} ." for path, word in wanted.items() if word]
         found = []
-        for row in self.store.ask(fill(_STYLES, filters="\n  ".join(filters))).texts():
+        for row in self.store.ask(stored("styles", filters="\n  ".join(filters))).texts():
             who, observation, index, name, aim, with_, velocity, points = row
             style = Style(name, aim, with_, numbers(velocity), path_of(points))
             found.append(((observation, int(index)), FoundStyle(style, who, observation)))
@@ -131,51 +131,6 @@ class Knowledge(Agents):
         """An agent's style of doing an action, from the first observation by name."""
         found = self.styles(agent=agent, action=action, purpose=purpose, ee=ee)
         return found[0].style if found else None
-
-
-_RANK = f"""SELECT DISTINCT ?kind ?place ?side
-WHERE {{
-  VALUES ?kind {{ @kinds@ }}
-  {{ ?place {CAPAR.goalKind} ?kind }} UNION {{ ?place {CAPAR.dominantKind} ?kind }}
-  @filters@
-  ?place {CAPAR.side} ?side .
-}}"""
-
-_DETAIL = f"""SELECT ?place ?observation ?agent ?action ?purpose ?ee ?side ?frame
-  ?dominant ?goal ?held ?at ?seen ?view
-WHERE {{
-  VALUES ?place {{ @places@ }}
-  ?place {CAPAR.actionName} ?action ;
-    {CAPAR.ee} ?ee ;
-    {CAPAR.agent}/{CAPAR.name} ?agent ;
-    {CAPAR.side} ?side ;
-    {CAPAR.frame} ?frame .
-  ?in {CAPAR.location} ?place ;
-    {CAPAR.capture}/{CAPAR.name} ?observation .
-  OPTIONAL {{ ?place {CAPAR.purpose} ?purpose }}
-  OPTIONAL {{ ?place {CAPAR.dominant}/{CAPAR.name} ?dominant }}
-  OPTIONAL {{ ?place {CAPAR.goal}/{CAPAR.name} ?goal }}
-  OPTIONAL {{ ?place {CAPAR.seen}/{CAPAR.name} ?seen }}
-  OPTIONAL {{ ?place {CAPAR.eeNlt} ?held }}
-  OPTIONAL {{ ?place {CAPAR.goalNlt} ?at }}
-  OPTIONAL {{ ?place {CAPAR.vNlt} ?view }}
-}}"""
-
-
-_STYLES = f"""SELECT ?agent ?observation ?index ?action ?purpose ?ee ?velocity ?path
-WHERE {{
-  @filters@
-  ?style a {CAPAR.AgentStyle} ;
-    {CAPAR.agent}/{CAPAR.name} ?agent ;
-    {CAPAR.index} ?index ;
-    {CAPAR.actionName} ?action ;
-    {CAPAR.ee} ?ee .
-  ?in {CAPAR.style} ?style ;
-    {CAPAR.capture}/{CAPAR.name} ?observation .
-  OPTIONAL {{ ?style {CAPAR.purpose} ?purpose }}
-  OPTIONAL {{ ?style {CAPAR.velStyle} ?velocity }}
-  OPTIONAL {{ ?style {CAPAR.pathStyle} ?path }}
-}}"""
 
 
 def _found_location(text: list[str], mirror: bool, kind: str, asked: str) -> FoundLocation:

@@ -25,7 +25,7 @@ from kb.encode import shared
 from kb.encode.pars import COMMON, MOTIONS, complex_node, is_known
 from kb.store import names
 from kb.store.answers import plain
-from kb.store.sparql import fill
+from kb.store.sparql import stored
 from kb.store.statements import LABEL, PropertyValues, StatementIndex, Statements, numbers
 from kb.store.stores import Store
 from ontology import CAPAR
@@ -49,24 +49,9 @@ class Stored:
     duration_s: float
 
 
-_LIST = f"""SELECT ?name ?action ?agent ?profile ?version ?rules ?duration
-WHERE {{
-  ?seen a {CAPAR.Observation} ;
-    {CAPAR.capture}/{CAPAR.name} ?name ;
-    {CAPAR.name} ?action ;
-    {CAPAR.agent}/{CAPAR.name} ?agent ;
-    {CAPAR.profile} ?profile ;
-    {CAPAR.version} ?version ;
-    {CAPAR.ruleBase}/{CAPAR.sha256} ?rules ;
-    {CAPAR.duration} ?duration .
-  @filters@
-}}
-ORDER BY ?name"""
-
-
 def observations(store: Store, filters: str = "") -> tuple[Stored, ...]:
     """Observations, by name; of those, the ones for which some patterns over ``?seen`` hold."""
-    rows = store.ask(fill(_LIST, filters=filters)).texts()
+    rows = store.ask(stored("observations", filters=filters)).texts()
     return tuple(Stored(a, b, c, d, e, f, float(duration)) for a, b, c, d, e, f, duration in rows)
 
 
@@ -292,16 +277,6 @@ class FeatureRow:
     """How many segments have these features and this name."""
 
 
-_SEEN = f"""SELECT ?features ?name ?general (COUNT(DISTINCT ?segment) AS ?times)
-WHERE {{
-  ?segment a {CAPAR.Segment} ;
-    {CAPAR.features} ?features ;
-    {CAPAR.action}/{CAPAR.name} ?name .
-  OPTIONAL {{ ?segment {CAPAR.general} ?general }}
-}}
-GROUP BY ?features ?name ?general"""
-
-
 def _feature_rows(store: Store) -> tuple[FeatureRow, ...]:
     reading = StatementIndex(store.graph(names.GRAPHS["actions"]))
     declared = {
@@ -313,7 +288,7 @@ def _feature_rows(store: Store) -> tuple[FeatureRow, ...]:
     }
     seen: Counter[tuple[str, FeatureSet]] = Counter()
     general: dict[tuple[str, FeatureSet], tuple[str, ...]] = dict(declared)
-    for seen_bits, name, more, times in store.ask(_SEEN).rows:
+    for seen_bits, name, more, times in store.ask(stored("features_seen")).rows:
         if isinstance(seen_bits, NamedNode) and isinstance(name, Literal):
             key = (name.value, _features(reading, seen_bits))
             seen[key] += int(plain(times) or 0)

@@ -4,6 +4,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from difflib import get_close_matches
+from functools import cache
+from importlib.resources import files
 from itertools import dropwhile, pairwise
 
 from kb.errors import QueryError
@@ -224,6 +226,16 @@ def _arguments(pieces: list[Token], opening: int) -> tuple[list[list[Token]], in
         elif at > opening:
             arguments[-1].append(pieces[at])
     raise QueryError("a parenthesis of a capar: function is never closed")
+
+
+def stored(name: str, /, **parts: str) -> str:
+    """A query or update of ours from its file (``kb/store/queries``), its gaps filled."""
+    return fill(_stored(name), **parts)
+
+
+@cache
+def _stored(name: str) -> str:
+    return complete((files("kb") / "store" / "queries" / f"{name}.rq").read_text("utf-8"))
 
 
 def fill(template: str, **parts: str) -> str:

@@ -6,7 +6,7 @@ from pyoxigraph import Literal, NamedNode, Quad
 
 from kb.errors import SchemaError
 from kb.store.names import GRAPHS
-from kb.store.sparql import fill
+from kb.store.sparql import stored
 from kb.store.statements import TYPE, insertion
 from kb.store.stores import Store
 from ontology import CAPAR
@@ -75,23 +75,10 @@ def check_version(place: str, found: int | None) -> None:
         raise SchemaError(place, found, f"{remedy}{newer}")
 
 
-_ORPHANS = f"""DELETE {{ GRAPH ?shared {{ ?thing ?predicate ?value }} }}
-WHERE {{
-  GRAPH @graph@ {{ @graph@ {CAPAR.mentions} ?thing }}
-  FILTER NOT EXISTS {{
-    GRAPH ?elsewhere {{ ?other {CAPAR.mentions} ?thing }}
-    FILTER(?elsewhere != @graph@)
-  }}
-  VALUES ?shared {{ @shared@ }}
-  FILTER NOT EXISTS {{ GRAPH ?shared {{ ?thing {CAPAR.declared} true }} }}
-  GRAPH ?shared {{ ?thing ?predicate ?value }}
-}}"""
-
-
 def removal(graph: NamedNode) -> str:
     """The update that takes an observation back, and what nothing else mentions."""
     shared = " ".join(str(GRAPHS[each]) for each in ("agents", "objects", "actions"))
-    orphans = fill(_ORPHANS, graph=str(graph), shared=shared)
+    orphans = stored("remove_orphans", graph=str(graph), shared=shared)
     return f"{orphans} ;\nDROP SILENT GRAPH {graph}"
 
 

@@ -11,7 +11,7 @@ from kb.actionary import Actionary
 from kb.checks import by_shacl, check
 from kb.errors import StoreError
 from kb.exchange import bring_in
-from kb.lookup.agents import AGENT, OBJECT
+from kb.lookup.agents import PROFILES
 from kb.store.names import GRAPHS, shared
 
 
@@ -76,13 +76,13 @@ def test_an_export_from_before_keeps_agents_joined() -> None:
 def test_every_field_of_a_listing_is_shown_whether_filled_or_empty(actionary: Actionary) -> None:
     actionary.add(by("Ada", "take"))
     mug = actionary.object_profile("mug")
-    assert mug.keys() == OBJECT.keys()
+    assert mug.keys() == PROFILES["object"].keys()
     assert mug["tag"] == ("mobile",)
     assert "container" in mug["more general"]
     assert "Reach" in mug["actions (observed)"]
     assert mug["constraint locations"]
     assert mug["state: restitution"] == ()
-    assert actionary.agent_profile("Ada").keys() == AGENT.keys()
+    assert actionary.agent_profile("Ada").keys() == PROFILES["agent"].keys()
     with pytest.raises(UnknownNameError, match="mug"):
         actionary.object_profile("mgu")
 
