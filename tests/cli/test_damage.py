@@ -48,7 +48,12 @@ KINDS: dict[str, Damage] = {
 FILES = ("CURRENT", "MANIFEST-*", "smallest *.sst", "largest *.sst")
 """What is damaged, by the names that RocksDB gives; logs and options may be lost without harm."""
 
-READING = (("check",), ("query", "actions", "--time-limit", "10"), ("show", "DrinkFromMug"), ("export",))
+READING = (
+    ("check",),
+    ("query", "actions", "--time-limit", "10"),
+    ("show", "DrinkFromMug"),
+    ("export",),
+)
 WRITING = (("forget", "DrinkFromMug"), ("observe", DEMO, "--on-unknown", "keep"))
 
 
