@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Int
 
 from capar.model.calibration import Calibration, Found
-from capar.model.capture import Capture, Purpose, Role, Sensor, ShapeSource, TagObject, TagType
+from capar.model.capture import Capture, Role, Sensor, ShapeSource, TagObject, TagType
 from capar.model.facts import (
     MEASURED,
     Between,
@@ -651,13 +651,9 @@ def _scene(capture: Capture) -> Iterator[Fact]:
     if capture.force_transfer:
         yield ForceTransfer()
     for rank, purpose in enumerate(capture.purposes):
-        yield _intended(rank, purpose)
-
-
-def _intended(rank: int, purpose: Purpose) -> Intended:
-    return Intended(
-        rank, purpose.action or ANY, purpose.object or ANY, purpose.goal or ANY, purpose.purpose
-    )
+        yield Intended(
+            rank, purpose.action or ANY, purpose.object or ANY, purpose.goal or ANY, purpose.purpose
+        )
 
 
 def _guides(

@@ -258,7 +258,11 @@ def _complaint(errors: list[Any], where: str) -> str:
 def _features_place(value: Any, place: str = "") -> str:
     """Where in a document the first feature set stands that contradicts itself."""
     names = {each.name for each in fields(FeatureSet)}
-    if isinstance(value, dict) and names == set(value) and _all_text(value):
+    if (
+        isinstance(value, dict)
+        and names == set(value)
+        and all(isinstance(each, str) for each in value.values())
+    ):
         try:
             FeatureSet(**value)
         except CaparError:
@@ -268,10 +272,6 @@ def _features_place(value: Any, place: str = "") -> str:
         items = value.items() if isinstance(value, dict) else enumerate(value)
     found = (_features_place(each, f"{place}.{key}" if place else str(key)) for key, each in items)
     return next(filter(None, found), "")
-
-
-def _all_text(value: dict[str, Any]) -> bool:
-    return all(isinstance(each, str) for each in value.values())
 
 
 def _shown(value: Any) -> str:

@@ -202,13 +202,12 @@ def read_notice(document: Mapping[str, Any]) -> Notice:
         raise CaparError(f"bodies: expected a list of names, found {bodies!r}")
     if not isinstance(values, dict) or not all(map(_is_value, values.values())):
         raise CaparError(f"values: expected names with numbers or texts, found {values!r}")
-    if not all(each is None or _is_number(each) for each in times):
+    if not all(
+        each is None or (isinstance(each, int | float) and (not isinstance(each, bool)))
+        for each in times
+    ):
         raise CaparError(f"start_s, end_s: expected seconds, found {times!r}")
     return notice(code, *bodies, start_s=times[0], end_s=times[1], **values)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _is_value(value: object) -> bool:

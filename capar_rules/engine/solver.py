@@ -200,17 +200,13 @@ def _program(
     if isinstance(facts, str):
         return files, iter([facts])
     facts = tuple(facts)
-    base = _rule_base(files, _state(files))
+    base = _rule_base(files, tuple(_contents(files).values()))
     base.asked += 1
     if base.asked <= OFTEN and len(facts) > MANY_FACTS:
         _grounded(files, "", "--models=1")
     elif base.asked <= OFTEN:
         return files, _texts(facts)
     return (), chain([base.program(signatures(facts))], _texts(facts))
-
-
-def _state(files: tuple[Path, ...]) -> tuple[bytes, ...]:
-    return tuple(_contents(files).values())
 
 
 @lru_cache(maxsize=16)

@@ -331,7 +331,18 @@ def firing(statements: Sequence[Statement], measured: Iterable[Signature]) -> li
     ``statements``: A rule base. ``measured``: predicates that have a fact.
     """
     known, fired = set(measured), set[int]()
-    needs = [(number, each, _needed(each)) for number, each in enumerate(statements)]
+    needs = [
+        (
+            number,
+            each,
+            {
+                literal.atoms[0].signature
+                for literal in each.body
+                if literal.kind == "atom" and literal.sign == 0
+            },
+        )
+        for number, each in enumerate(statements)
+    ]
     while found := [(number, each) for number, each, needed in needs if needed <= known]:
         fired |= {number for number, _ in found}
         known |= heads_of(each for _, each in found)
@@ -361,15 +372,6 @@ def _merely_defines(statement: Statement) -> bool:
 
 
 _SAYING_NOTHING = ("comment", "defined", "definition")
-
-
-def _needed(statement: Statement) -> set[Signature]:
-    """The predicates that must have an atom for a rule to fire."""
-    return {
-        literal.atoms[0].signature
-        for literal in statement.body
-        if literal.kind == "atom" and literal.sign == 0
-    }
 
 
 FITS = ("fits", 2)

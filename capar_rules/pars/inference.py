@@ -1,7 +1,7 @@
 """Segments inferred from facts by the rules, and the actions that several links do jointly."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -168,7 +168,15 @@ class _Reading:
             frozenset(common),
             frozenset(no_steps),
             violations,
-            joint_actions(self.answer, self._numbered(links), rate_hz=self.rate),
+            joint_actions(
+                self.answer,
+                {
+                    (link.ee, first): segment
+                    for link in links
+                    for (first, _), segment in zip(self.spans[link.ee], link.segments, strict=True)
+                },
+                rate_hz=self.rate,
+            ),
             self._relations(),
         )
 
@@ -185,14 +193,6 @@ class _Reading:
             for one, other in self._rows(kind)
         )
         return tuple(sorted(found))
-
-    def _numbered(self, links: Iterable[ObservedLink]) -> dict[Key, Segment]:
-        """Segments by end-effector and the tick at which they begin."""
-        return {
-            (link.ee, first): segment
-            for link in links
-            for (first, _), segment in zip(self.spans[link.ee], link.segments, strict=True)
-        }
 
     def _segment(self, link: Link, index: int, first: int, last: int) -> Segment:
         tick = (link.ee, first)

@@ -115,7 +115,7 @@ def poses_of(
     else:
         noise, still = Noise(known.noise_m, known.noise_rad), known.still
         fixed = known.fixed
-    smooth = filled if still else _smooth(filled, thresholds)
+    smooth = filled if still else filled if filled.lost.all() else LowPassed(filled, thresholds)
     if fixed is not None:
         settled = _held(filled, fixed)
     else:
@@ -136,10 +136,6 @@ def median_pose(stream: Stream, frames: slice) -> tuple[Vector, Quaternion]:
     core = near <= np.median(near)
     mean = Rotation.from_quat(turns[core], scalar_first=True).mean()
     return places[core].mean(axis=0), mean.as_quat(scalar_first=True)
-
-
-def _smooth(stream: Stream, thresholds: Thresholds) -> Stream:
-    return stream if stream.lost.all() else LowPassed(stream, thresholds)
 
 
 def _fixed_pose(body: Sensor | TagObject, stream: Stream) -> FixedPose | None:

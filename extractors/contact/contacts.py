@@ -313,15 +313,16 @@ def counted_meetings(
         own = one in hands and other in hands
         if not own or capture.agent_of(hands[one]) != capture.agent_of(hands[other]):
             yield True
-        elif any(name in (one, other) and _share(span, busy) for name, busy in held):
+        elif any(
+            (
+                name in (one, other) and (span[0] <= busy[1] and busy[0] <= span[1])
+                for name, busy in held
+            )
+        ):
             yield False
         else:
             waits = _rests(bodies, one, span[0], thresholds)
             yield not (waits and not _rests(bodies, other, span[0], thresholds))
-
-
-def _share(one: Interval, other: Interval) -> bool:
-    return one[0] <= other[1] and other[0] <= one[1]
 
 
 def _rests(bodies: Bodies, hand: str, frame: int, thresholds: Thresholds) -> bool:

@@ -180,7 +180,7 @@ class Evidence:
 
     def unheld_rest(self, thing: str) -> Frames:
         """Where a thing rests and nobody surely holds it."""
-        return self._at_rest(thing) & ~self.held(thing)
+        return mask(self._rests(thing), len(self.capture.times)) & ~self.held(thing)
 
     def settled(self, hand: str) -> dict[str, Frames]:
         """By object, where a hand without load rests by it and by no nearer one.
@@ -250,9 +250,6 @@ class Evidence:
         spans = [(a, z) for a, z in self._rests(thing) if unheld[a : z + 1].any()]
         return mask(spans, len(self.capture.times))
 
-    def _at_rest(self, thing: str) -> Frames:
-        return mask(self._rests(thing), len(self.capture.times))
-
     def _rests(self, thing: str) -> list[tuple[int, int]]:
         body, last = self.bodies.objects[thing], len(self.capture.times) - 1
         own = self.capture.tag_object(thing)
@@ -268,15 +265,16 @@ class Evidence:
 
     @cached_property
     def _mobile(self) -> list[BodyGeometry]:
-        return [each for each in self._things if self._tag(each.name) is TagType.MOBILE]
+        return [
+            each
+            for each in self._things
+            if self.capture.tag_object(each.name).tag is TagType.MOBILE
+        ]
 
     @cached_property
     def _things(self) -> list[BodyGeometry]:
         things = (each for each in self.capture.objects if each.tag is not TagType.SELF)
         return [self.bodies.objects[each.name] for each in things]
-
-    def _tag(self, thing: str) -> TagType:
-        return self.capture.tag_object(thing).tag
 
     def _lasts(self, frames: Frames) -> bool:
         step_s = 1.0 / frame_rate(self.capture.times)

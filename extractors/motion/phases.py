@@ -73,10 +73,9 @@ def turns_of_height(
     after_top = False
     between: list[Phase] = []
     for phase in found:
-        if abs(_rise(phase, middles)) < thresholds.reversal_m or phase.kind not in (
-            RISING,
-            SINKING,
-        ):
+        if abs(
+            float(middles[phase.last, 2] - middles[phase.first, 2])
+        ) < thresholds.reversal_m or phase.kind not in (RISING, SINKING):
             between.append(phase)
             continue
         if before is not None and any(before.first < frame < phase.first for frame in met):
@@ -101,10 +100,6 @@ def _turn(rise: Phase, between: Sequence[Phase], sink: Phase, middles: Places) -
     if any(one.last != other.first for one, other in pairwise(parts)):
         return []
     return [(rise.last + sink.first) // 2]
-
-
-def _rise(phase: Phase, middles: Places) -> float:
-    return float(middles[phase.last, 2] - middles[phase.first, 2])
 
 
 def _parts(body: BodyGeometry, span: slice, rate_hz: float, thresholds: Thresholds) -> list[Phase]:

@@ -106,18 +106,15 @@ def attention(
     looks = [
         (name, interval)
         for index, name in enumerate(names)
-        for interval in _looks(seen, index, capture.times, thresholds)
+        for interval in intervals(
+            seen == index,
+            capture.times,
+            dropout_s=thresholds.dropout_s,
+            minimum_s=thresholds.contact_minimum_s,
+        )
     ]
     looks.sort(key=lambda look: (look[1], look[0]))
     return Attention(tuple(names), seen, points, tuple(looks))
-
-
-def _looks(
-    seen: Int[np.ndarray, "frames"], index: int, times: Series, thresholds: Thresholds
-) -> list[Interval]:
-    return intervals(
-        seen == index, times, dropout_s=thresholds.dropout_s, minimum_s=thresholds.contact_minimum_s
-    )
 
 
 def sight(sensor: Sensor, poses: Poses) -> tuple[Places, Places]:

@@ -67,7 +67,12 @@ def _loads(
     )
     for foot, standing, own in zip(feet, down, (share, 1.0 - share), strict=True):
         for how, holds in _shares(own, standing, thresholds).items():
-            for span in _spans(holds, capture.times, thresholds):
+            for span in intervals(
+                holds,
+                capture.times,
+                dropout_s=thresholds.dropout_s,
+                minimum_s=thresholds.rest_minimum_s,
+            ):
                 yield Bears(foot.name, how, *span)
 
 
@@ -109,12 +114,6 @@ def _shares(share: Series, down: Holds, thresholds: Thresholds) -> dict[str, Hol
         whole = down & (share >= 1.0 - thresholds.touch_load_share)
         none = down & (share <= thresholds.touch_load_share)
         return {WHOLE: whole, PART: down & ~np.isnan(share) & ~whole & ~none, NONE: none}
-
-
-def _spans(holds: Holds, times: Series, thresholds: Thresholds) -> Sequence[Interval]:
-    return intervals(
-        holds, times, dropout_s=thresholds.dropout_s, minimum_s=thresholds.rest_minimum_s
-    )
 
 
 def _middle(sensors: Iterable[Sensor], bodies: Bodies) -> Places | None:
