@@ -20,43 +20,18 @@ SCHEMA = 3
 """The version that this program reads and writes, the field ``schema`` of an observation."""
 
 
-def take_schema(content: dict[str, Any], where: str) -> None:
-    """Take the version out of an observation's document.
-
-    Raises:
-        ParError: It is another one than this program's; the message says what to do.
-    """
+def _take_schema(content: dict[str, Any], where: str) -> None:
+    """Take the version out of an observation's document; raise ParError if it is another one."""
     if "schema" not in content and "links" not in content:
         raise ParError(f"{_place(where)}expected an observation, found none of its fields")
-    found = _version(content, where)
-    if found < SCHEMA:
+    found = content.pop("schema", 1)
+    if type(found) is not int or found < 1:
+        raise ParError(f"{_place(where)}schema: expected a whole number from 1, found {found!r}")
+    if found != SCHEMA:
         raise ParError(
             f"{_place(where)}this is an observation of schema {found}, this program reads "
             f"{SCHEMA}; observe the capture again"
         )
-    if found > SCHEMA:
-        raise ParError(
-            f"{_place(where)}a newer program wrote this observation (schema {found}; this one "
-            f"reads {SCHEMA}); install a capar that reads it, or observe the capture again"
-        )
-    del content["schema"]
-
-
-def _document(text: str, where: str) -> dict[str, Any]:
-    try:
-        content = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as error:
-        raise ParError(f"{_place(where)}this is no JSON: {error}") from None
-    if not isinstance(content, dict):
-        raise ParError(f"{_place(where)}expected an observation, found no object in braces")
-    return content
-
-
-def _version(content: dict[str, Any], where: str) -> int:
-    found = content.get("schema", 1)
-    if type(found) is not int or found < 1:
-        raise ParError(f"{_place(where)}schema: expected a whole number from 1, found {found!r}")
-    return found
 
 
 def _place(where: str) -> str:
@@ -121,7 +96,7 @@ def value_from_json(text: str, kind: type[_T], *, where: str = "") -> _T:
     facts: tuple[Fact, ...] = ()
     notices: tuple[Notice, ...] = ()
     if kind is Observation:
-        take_schema(content, where)
+        _take_schema(content, where)
         facts = _taken(content, "facts", read_fact, "atoms", where)
         notices = _taken(content, "notices", _notice, "notices", where)
     try:

@@ -394,7 +394,6 @@ KINDS: Mapping[str, NoticeKind] = {
         '{0!r} is one end-effector of several sensors: {sensors}; parts = "apart" tells each'
     ),
     "mesh-not-closed": NoticeKind("{0}: the mesh {mesh} is not closed, it has {edges} open edges"),
-    "earlier": NoticeKind("{text}"),
     "rule-violation": NoticeKind("{violation}"),
 }
 """Each code with its text: every sentence of a notice is here."""

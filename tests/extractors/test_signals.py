@@ -1,4 +1,4 @@
-"""The low-pass and the peaks are those of scipy.signal, which is too slow to import."""
+"""Signals: filters, peaks, clocks and intervals."""
 
 import numpy as np
 import pytest
@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.signal import butter, find_peaks, sosfiltfilt, sosfreqz
 
 from extractors.signals.filters import ORDER, cutoff, gains, kernel
+from extractors.signals.intervals import NEAREST, first_where, last_where
 from extractors.signals.zero_crossings import prominent_peaks
 from extractors.thresholds import Thresholds
 
@@ -55,3 +56,19 @@ def test_peaks_of_noise_are_those_of_find_peaks(seed: int, reach: int) -> None:
     signal = np.random.default_rng(seed).normal(size=500).cumsum()
     expected, _ = find_peaks(signal, prominence=1.5, wlen=2 * reach + 1)
     assert prominent_peaks(signal, 1.5, reach).tolist() == expected.tolist()
+
+
+LONG = 12 * NEAREST
+places = st.lists(st.integers(0, LONG - 1), max_size=4)
+frames = st.integers(-1, LONG)
+
+
+@given(places, frames)
+def test_the_first_frame_from_one_on_and_the_last_up_to_one_are_found(
+    where: list[int], frame: int
+) -> None:
+    holds = np.isin(np.arange(LONG), where)
+    later = [each for each in where if each >= max(frame, 0)]
+    sooner = [each for each in where if each <= frame]
+    assert first_where(holds.__getitem__, max(frame, 0), LONG) == min(later, default=None)
+    assert last_where(holds.__getitem__, min(frame, LONG - 1)) == max(sooner, default=None)

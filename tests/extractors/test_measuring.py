@@ -1,14 +1,20 @@
-"""A capture's facts: complete, in order, and the same however the world is turned or named."""
+"""A capture's facts: the same however it is turned, named, or cut into windows."""
 
 from dataclasses import replace
+from functools import cache
+from pathlib import Path
 
+import motions
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from measured_bodies import UP, ball, box, pick_and_place, still, stream
+from measured_bodies import UP, ball, box, eased, hand, pick_and_place, still, stream
+from motion_files import recordings_folder
 from scipy.spatial.transform import Rotation
+from windows import compared, repeated
 
+from capar.model.calibration import Calibration
 from capar.model.capture import (
     Agent,
     Capture,
@@ -21,21 +27,28 @@ from capar.model.capture import (
     TagType,
     notice,
 )
+from capar.model.errors import CaptureError, UnknownNameError
 from capar.model.facts import (
     MEASURED,
     Fact,
-    Frames,
     Gap,
     Intended,
     LookingAt,
     Moving,
     OfAgent,
-    RateMhz,
+    Pause,
     Touching,
     ZeroCrossing,
 )
-from extractors.contact.surfaces import surface
-from extractors.measure import measure
+from capar.model.json_form import to_json, value_from_json
+from capar.model.locations import ConstraintLocation
+from capar.model.observation import Segment
+from capar.model.par import FeatureSet
+from extractors.calibration import calibrate
+from extractors.measure import Measurements, measure
+from extractors.readers.bundle.capture_toml import read_capture
+from extractors.segments import STEPS, constraint_location, path_style, velocity_style
+from extractors.thresholds import Thresholds
 
 
 def of_kind(capture: Capture, kind: type[Fact]) -> list[Fact]:
@@ -97,13 +110,6 @@ def _renamed(text: str, names: dict[str, str]) -> str:
     for old, new in names.items():
         text = text.replace(f"{old},", f"{new},").replace(f"{old})", f"{new})")
     return text
-
-
-@pytest.mark.parametrize("rate_hz", [30.0, 59.94])
-def test_facts_tell_how_many_frames_there_are_and_how_many_come_in_a_second(rate_hz: float) -> None:
-    capture = pick_and_place(rate_hz=rate_hz)
-    assert of_kind(capture, Frames) == [Frames(0, len(capture.times) - 1)]
-    assert of_kind(capture, RateMhz) == [RateMhz(round(1000.0 * rate_hz))]
 
 
 def test_facts_are_in_the_order_of_their_kinds_then_by_value_and_the_same_each_time() -> None:
@@ -176,11 +182,7 @@ def test_what_is_assumed_lost_or_stood_in_for_is_told() -> None:
     ("gaps", "tag", "told"),
     [
         (((50, 99),), TagType.MOBILE, "from 0.50 to 0.99 s; {lasts}"),
-        (
-            ((20, 39), (50, 99)),
-            TagType.MOBILE,
-            "twice, for longest from 0.50 to 0.99 s; {lasts}",
-        ),
+        (((20, 39), (50, 99)), TagType.MOBILE, "twice, for longest from 0.50 to 0.99 s; {lasts}"),
         (
             ((0, 19), (50, 99), (150, 199)),
             TagType.MOBILE,
@@ -205,13 +207,6 @@ def test_each_loss_is_told_once_in_words(
     unknown = "no contact of it is known"
     lasts = "what touched it before and after is assumed to have touched it then"
     assert loss == f"'thing' was lost {told.format(unknown=unknown, lasts=lasts)}"
-
-
-def test_a_moments_loss_at_an_end_of_the_capture_is_no_long_one() -> None:
-    way = np.tile([0.0, 0.0, 1.0], (200, 1))
-    way[-1] = np.nan
-    hand = Sensor("hand", "hand", "right", "arm", stream(way), ball(0.04))
-    assert "long-gap" not in {each.code for each in measure(Capture("x", (hand,), ())).notices}
 
 
 def test_purposes_and_force_are_stated_in_the_users_order() -> None:
@@ -296,10 +291,7 @@ def test_of_several_agents_it_is_told_whose_hands_heads_and_other_parts_are_whic
     own = TagObject("head", TagType.SELF, there, ball(0.1))
     others = TagObject("bo_head", TagType.SELF, there, ball(0.1), agent="bo")
     both = replace(
-        capture,
-        sensors=(hand, bo),
-        objects=(*capture.objects, own, others),
-        others=(Agent("bo"),),
+        capture, sensors=(hand, bo), objects=(*capture.objects, own, others), others=(Agent("bo"),)
     )
     assert of_kind(both, OfAgent) == [
         OfAgent("bo_hand", "bo"),
@@ -310,16 +302,175 @@ def test_of_several_agents_it_is_told_whose_hands_heads_and_other_parts_are_whic
     assert of_kind(capture, OfAgent) == []
 
 
-def test_a_long_recording_keeps_no_offset_surfaces_and_its_facts_are_the_same(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    capture = pick_and_place()
-    shapes = {
-        one.shape.digest: one.shape for one in (*capture.sensors, *capture.objects) if one.shape
+SHORTEST = 2000
+"""Fewest frames of a window [1]: two margins and two seconds at least."""
+
+
+@cache
+def whole(name: str) -> tuple[Capture, Measurements]:
+    makers = {
+        "drinking": lambda: motions.drink_from_mug(motions.WOMAN),
+        "sliding": lambda: motions.slide_object(motions.TALL_MAN),
+        "rolling": lambda: motions.roll_object(motions.WOMAN),
+        "striking": lambda: motions.hit(motions.TALL_MAN),
     }
-    before = measure(capture).facts
-    kept = [surface(shape).keeps_offsets for shape in shapes.values()]
-    monkeypatch.setattr("extractors.measure.LONG_S", float(capture.times[-1]))
-    assert measure(capture).facts == before
-    assert any(kept)
-    assert not any(surface(shape).keeps_offsets for shape in shapes.values())
+    capture = repeated(makers[name]().capture, 7)
+    return capture, measure(capture)
+
+
+def parts(data: st.DataObject, frames: int) -> tuple[int, int]:
+    length = data.draw(st.integers(SHORTEST, min(frames, 3000)), label="length")
+    first = data.draw(st.integers(0, frames - length), label="first")
+    return first, first + length - 1
+
+
+@pytest.mark.parametrize("name", ["drinking", "sliding", "rolling", "striking"])
+@given(st.data())
+@settings(max_examples=6, deadline=None)
+def test_a_window_shows_what_the_whole_shows_in_its_inner_part(
+    name: str, data: st.DataObject
+) -> None:
+    capture, measured = whole(name)
+    found, expected = compared(capture, measured, *parts(data, len(capture.times)))
+    assert found == expected
+
+
+@pytest.mark.parametrize("place", ["manipnet:cube_med2", "hand_embodiment_pillow"])
+def test_a_window_of_a_recording_shows_what_the_whole_shows(
+    place: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CAPAR_DATA", str(recordings_folder()))
+    capture = read_capture(str(Path(__file__).parents[2] / "examples" / place))
+    measured = measure(capture)
+    frames = len(capture.times)
+    found, expected = compared(capture, measured, frames // 5, 4 * frames // 5)
+    assert {type(each) for each in expected} >= {ZeroCrossing, Pause}
+    assert found == expected
+
+
+def test_measuring_with_its_own_calibration_changes_nothing() -> None:
+    capture = pick_and_place(noise_m=0.0005, noise_rad=0.002)
+    plain = measure(capture)
+    again = measure(capture, calibrate(capture))
+    assert again.facts == plain.facts
+    assert again.notices == plain.notices
+    assert again.calibration == plain.calibration == calibrate(capture)
+
+
+def test_a_calibration_comes_back_from_json() -> None:
+    known = calibrate(pick_and_place(noise_m=0.0005))
+    assert value_from_json(to_json(known), Calibration) == known
+
+
+@given(st.floats(0.0003, 0.003))
+@settings(max_examples=5, deadline=None)
+def test_it_states_the_noise_of_each_stream(noise_m: float) -> None:
+    known = calibrate(pick_and_place(noise_m=noise_m))
+    assert known.tag_object("thing").noise_m == pytest.approx(noise_m, rel=0.25)
+
+
+def test_a_fixed_object_stands_where_it_was_calibrated_in_every_part() -> None:
+    noise = np.random.default_rng(0).normal(0.0, 0.002, (400, 3))
+    shaken = still((0.0, 0.0, 0.7), 400)
+    shaken = replace(shaken, positions=shaken.positions + noise)
+    table = TagObject("table", TagType.FIXED, shaken, ball(0.3))
+    capture = Capture("x", (hand(np.zeros((400, 3)), ball(0.05)),), (table,))
+    known = calibrate(capture)
+    fixed = known.tag_object("table").fixed
+    assert fixed is not None
+    assert fixed.position_m == pytest.approx((0.0, 0.0, 0.7), abs=0.0005)
+    part = replace(table, stream=replace(shaken, positions=shaken.positions + 0.001))
+    measured = measure(replace(capture, objects=(part,)), known)
+    settled = measured.bodies.objects["table"].poses.settled
+    assert (settled.positions == np.array(fixed.position_m)).all()
+
+
+def test_a_calibration_of_another_rate_is_refused() -> None:
+    known = calibrate(pick_and_place(rate_hz=50.0))
+    with pytest.raises(CaptureError, match="100 frames a second"):
+        measure(pick_and_place(rate_hz=100.0), known)
+
+
+def test_a_calibration_that_lacks_a_body_is_refused() -> None:
+    capture = pick_and_place()
+    known = calibrate(replace(capture, objects=capture.objects[:1]))
+    with pytest.raises(UnknownNameError, match="table"):
+        measure(capture, known)
+
+
+LIMITS = Thresholds()
+
+
+def ending(frame: int) -> Segment:
+    """A segment of the right hand that ends at a frame, of which nothing else matters here."""
+    return Segment(
+        ee="right_hand",
+        index=0,
+        first=0,
+        last=frame,
+        start_s=0.0,
+        end_s=1.0,
+        name="Touch",
+        general=(),
+        candidates=(),
+        level="",
+        objects=("thing",),
+        possessed=False,
+        features=FeatureSet("0", "1", "0", "hand", "0"),
+        begins=(),
+        ends=(),
+        purpose="",
+    )
+
+
+def where(capture: Capture, *, dominant: str, goal: str, frame: int) -> ConstraintLocation:
+    measured = measure(capture)
+    return constraint_location(
+        capture, measured.bodies, measured.attention, ending(frame), dominant=dominant, goal=goal
+    )
+
+
+def test_a_grip_at_the_side_of_a_box_is_half_a_size_from_its_middle() -> None:
+    found = where(pick_and_place(), dominant="", goal="thing", frame=200)
+    assert found.ee_nlt is None
+    assert found.goal_nlt is not None
+    assert found.goal_nlt.position[0] == pytest.approx(-0.5, abs=0.01)
+    assert found.goal_nlt.orientation == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=1e-6)
+
+
+def test_a_thing_put_down_is_located_on_itself_and_on_its_goal() -> None:
+    found = where(pick_and_place(), dominant="thing", goal="table", frame=240)
+    assert found.ee_nlt is not None
+    assert found.goal_nlt is not None
+    assert found.ee_nlt.position[2] == pytest.approx(-0.5, abs=0.01)
+    assert found.goal_nlt.position[2] == pytest.approx(0.5, abs=0.03)
+
+
+@given(st.floats(0.2, 3.0), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+@settings(max_examples=20)
+def test_a_velocity_style_never_falls_and_does_not_depend_on_how_long_the_way_is(
+    scale: float, y: float, z: float
+) -> None:
+    times = np.arange(101) / 100.0
+    share = eased(times, 0.0, 1.0)
+    way = np.outer(share, [scale, scale * y, scale * z])
+    style = velocity_style(way, times, 0, 100, thresholds=LIMITS)
+    assert len(style) == STEPS
+    assert style[0] == 0.0
+    assert style[-1] == 1.0
+    assert all(np.diff(style) >= 0.0)
+    assert style == pytest.approx(list(np.interp(np.linspace(0, 1, STEPS), times, share)), abs=1e-6)
+
+
+def test_the_style_of_what_does_not_move_is_even() -> None:
+    style = velocity_style(np.zeros((50, 3)), np.arange(50) / 100.0, 0, 49, thresholds=LIMITS)
+    assert style == pytest.approx(list(np.linspace(0.0, 1.0, STEPS)))
+
+
+def test_a_path_style_holds_the_places_strictly_inside_a_segment() -> None:
+    times = np.arange(101) / 100.0
+    way = np.outer(times, [1.0, 2.0, 3.0])
+    points = path_style(way, times, np.array([0, 20, 45, 80, 100]), 20, 80)
+    assert len(points) == 1
+    assert points[0].time == pytest.approx(25 / 60)
+    assert points[0].position == pytest.approx((0.45, 0.9, 1.35))

@@ -1,0 +1,498 @@
+"""Borders: numbered, shared, idle, and contacts that flicker."""
+
+import itertools
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from itertools import chain, combinations
+from random import Random
+
+import motions
+import pytest
+from flickering import flickering
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from capar.model.errors import RuleError
+from capar.model.facts import (
+    Fact,
+    FlickerCorrection,
+    Frames,
+    Link,
+    Moving,
+    RateMhz,
+    Resting,
+    Tag,
+    Touching,
+)
+from capar.model.par import LinkSteps, Step
+from capar_rules.borders.border_numbers import by_object, overlapping, shared, undisturbed
+from capar_rules.borders.deflicker import steady
+from capar_rules.borders.ticks import Meanwhile, Shares, Undisturbed, in_frames, times
+from capar_rules.engine.profiles import profile
+from capar_rules.engine.solver import rule_file
+from capar_rules.pars.inference import infer
+from capar_rules.pars.pars import _relations, allen
+from extractors.measure import measure
+
+FLICKER = 15
+"""Frames of 150 ms at 100 Hz: nobody lets go and takes again in less."""
+
+SCENE = (Frames(0, 399), RateMhz(100000), Link("hand", "hand", "right"), Tag("mug", "mobile"))
+
+Span = tuple[int, int]
+
+
+def touches(*spans: Span, body: str = "hand", other: str = "mug") -> tuple[Fact, ...]:
+    return tuple(Touching(body, other, *each) for each in spans)
+
+
+def contacts(facts: tuple[Fact, ...], body: str = "hand", other: str = "mug") -> list[Span]:
+    return [
+        (each.first, each.last)
+        for each in facts
+        if isinstance(each, Touching) and (each.body, each.other) == (body, other)
+    ]
+
+
+def doubts(facts: tuple[Fact, ...]) -> list[FlickerCorrection]:
+    return [each for each in facts if isinstance(each, FlickerCorrection)]
+
+
+def test_a_short_loss_of_contact_is_bridged_and_told() -> None:
+    found = steady((*SCENE, *touches((50, 100), (111, 200))))
+    assert contacts(found) == [(50, 200)]
+    assert doubts(found) == [FlickerCorrection("hand", "mug", 101, 110, "touching")]
+
+
+def test_a_loss_as_long_as_letting_go_and_taking_again_stays() -> None:
+    measured = (*SCENE, *touches((50, 100), (101 + FLICKER, 200)))
+    assert steady(measured) == measured
+
+
+def test_a_lone_contact_stays_however_short_it_is() -> None:
+    measured = (*SCENE, *touches((50, 54), (90, 94), (200, 300)))
+    assert steady(measured) == measured
+
+
+def test_chatter_before_a_grasp_is_one_beginning() -> None:
+    found = steady((*SCENE, *touches((50, 51), (60, 62), (70, 200))))
+    assert contacts(found) == [(70, 200)]
+    assert {each.taken for each in doubts(found)} == {"apart"}
+
+
+def test_a_thing_that_stops_for_a_moment_moves_on() -> None:
+    found = steady((*SCENE, *touches((50, 300)), Moving("mug", 80, 120), Moving("mug", 125, 200)))
+    assert Moving("mug", 80, 200) in found
+    assert doubts(found) == [FlickerCorrection("mug", "mug", 121, 124, "moving")]
+
+
+def test_a_hand_that_twitches_rests_on() -> None:
+    found = steady((*SCENE, Resting("hand", 0, 100), Resting("hand", 110, 300)))
+    assert Resting("hand", 0, 300) in found
+    assert doubts(found) == [FlickerCorrection("hand", "hand", 101, 109, "resting")]
+
+
+def test_what_passes_from_one_thing_to_another_changes_once() -> None:
+    """Each pair alone could as well begin earlier: over the whole link, one exchange explains."""
+    first = touches((50, 100), (107, 112), other="mug")
+    second = touches((101, 106), (113, 200), other="jar")
+    found = steady((*SCENE, Tag("jar", "mobile"), *first, *second))
+    (mug,), (jar,) = contacts(found), contacts(found, other="jar")
+    assert mug[1] + 1 == jar[0]
+
+
+@st.composite
+def courses(draw: st.DrawFn) -> tuple[Fact, ...]:
+    """Two contacts of a hand that chatter."""
+    facts: list[Fact] = list(SCENE)
+    for other in ("mug", "jar"):
+        frame = draw(st.integers(0, 60))
+        for _ in range(draw(st.integers(0, 4))):
+            length = draw(st.integers(1, 25))
+            facts.append(Touching("hand", other, frame, frame + length - 1))
+            frame += length + draw(st.integers(1, 25))
+    return tuple(facts)
+
+
+def stretches(spans: list[Span]) -> list[tuple[int, int, int]]:
+    found, free = [], 0
+    for first, last in spans:
+        found += [(0, free, first - 1)] * (first > free)
+        found.append((1, first, last))
+        free = last + 1
+    return [*found, (0, free, 399)] if free < 400 else found
+
+
+def cost(measured: dict[str, list[tuple[int, int, int]]], doubted: set[tuple[str, int]]) -> int:
+    """Half a flicker for each frame in which something changes, and what is contradicted, twice."""
+    changes, contradicted = set(), 0
+    for name, course in measured.items():
+        believed = [holds ^ ((name, place) in doubted) for place, (holds, *_) in enumerate(course)]
+        changes |= {
+            course[place][1]
+            for place in range(1, len(course))
+            if believed[place] != believed[place - 1]
+        }
+        contradicted += sum(
+            last - first + 1
+            for place, (_, first, last) in enumerate(course)
+            if (name, place) in doubted
+        )
+    return FLICKER * len(changes) + 2 * contradicted
+
+
+def may_be_doubted(course: list[tuple[int, int, int]], place: int) -> bool:
+    def short(at: int) -> bool:
+        return course[at][2] - course[at][1] + 1 < FLICKER
+
+    inner = 0 < place < len(course) - 1
+    return inner and short(place) and (not course[place][0] or short(place - 1) or short(place + 1))
+
+
+@settings(max_examples=60, deadline=None)
+@given(facts=courses())
+def test_no_other_course_costs_less(facts: tuple[Fact, ...]) -> None:
+    """Against every set of stretches that could be doubted."""
+    measured = {name: stretches(contacts(facts, other=name)) for name in ("mug", "jar")}
+    doubtful = [
+        (name, place)
+        for name, course in measured.items()
+        for place in range(len(course))
+        if may_be_doubted(course, place)
+    ]
+    chosen = {
+        (name, place)
+        for each in doubts(steady(facts))
+        for name, course in measured.items()
+        for place, (_, first, last) in enumerate(course)
+        if (each.other, each.first, each.last) == (name, first, last)
+    }
+    subsets = chain.from_iterable(combinations(doubtful, size) for size in range(len(doubtful) + 1))
+    assert cost(measured, chosen) == min(cost(measured, set(each)) for each in subsets)
+
+
+@settings(max_examples=30, deadline=None)
+@given(facts=courses(), random=st.randoms(use_true_random=False))
+def test_the_measurements_can_be_told_again_and_their_order_does_not_matter(
+    facts: tuple[Fact, ...], random: Random
+) -> None:
+    found = steady(facts)
+    for name in ("mug", "jar"):
+        frames = {
+            frame for first, last in contacts(found, other=name) for frame in range(first, last + 1)
+        }
+        for each in doubts(found):
+            if each.other == name:
+                frames ^= set(range(each.first, each.last + 1))
+        assert frames == {
+            frame for first, last in contacts(facts, other=name) for frame in range(first, last + 1)
+        }
+    shuffled = list(facts)
+    random.shuffle(shuffled)
+    assert set(steady(shuffled)) == set(found)
+
+
+@pytest.mark.parametrize("every_s", [0.21, 0.34, 0.55])
+@pytest.mark.parametrize(
+    "action",
+    [motions.drink_from_mug, motions.touch_cycle, motions.pick_up_with_both_hands],
+    ids=lambda each: each.__name__,
+)
+def test_lost_contact_does_not_change_the_steps(
+    action: Callable[..., motions.Trial], every_s: float
+) -> None:
+    """Without the rules, the same losses cut every hold in pieces."""
+    capture = action(motions.WOMAN).capture
+    facts = measure(capture).facts
+    lost = flickering(facts, capture.rate_hz, every_s=every_s)
+    whole, mended, cut = (
+        [[each.name for each in link.segments] for link in infer(each, profile=profile()).links]
+        for each in (facts, steady(lost), lost)
+    )
+    assert mended == whole
+    assert cut != whole
+
+
+def test_it_can_be_switched_off_and_is_off_in_the_thesis() -> None:
+    assert profile().steady
+    assert not profile("thesis").steady
+    assert not profile(steady=False).steady
+    assert profile(steady=False).fingerprint != profile().fingerprint
+
+
+RATE_HZ = 20
+FLICKER_WINDOWS_FLICKER = 3
+"""Frames of 150 ms at 20 Hz."""
+
+WINDOW = times().flicker_window_ms * RATE_HZ // 1000
+LAST = 3 * WINDOW
+FLICKER_WINDOWS_SCENE = (
+    RateMhz(RATE_HZ * 1000),
+    Link("hand", "hand", "right"),
+    Tag("mug", "mobile"),
+    Tag("jar", "mobile"),
+)
+
+Interval = Touching | Resting
+
+
+def flicker_windows_doubts(facts: tuple[Fact, ...]) -> set[Fact]:
+    return {each for each in steady(facts) if isinstance(each, FlickerCorrection)}
+
+
+def scene(intervals: list[Interval], first: int, last: int) -> tuple[Fact, ...]:
+    """What was measured from the first to the last frame of a longer capture."""
+    cut = [
+        replace(each, first=max(each.first, first), last=min(each.last, last))
+        for each in intervals
+        if each.first <= last and each.last >= first
+    ]
+    return (Frames(first, last), *FLICKER_WINDOWS_SCENE, *cut)
+
+
+def changes(intervals: list[Interval]) -> set[int]:
+    return {frame for each in intervals for frame in (each.first, each.last + 1)}
+
+
+@st.composite
+def flicker_windows_courses(draw: st.DrawFn) -> list[Interval]:
+    """Contacts and rest of a hand that flicker, with longer stretches between."""
+    found: list[Interval] = []
+    for name in ("mug", "jar", "hand"):
+        frame = draw(st.integers(0, 9))
+        for _ in range(draw(st.integers(1, 9))):
+            length = draw(st.integers(1, 2 * FLICKER_WINDOWS_FLICKER))
+            last = frame + length - 1
+            rest = name == "hand"
+            found.append(
+                Resting("hand", frame, last) if rest else Touching("hand", name, frame, last)
+            )
+            frame += length + draw(
+                st.sampled_from([1, 2, 2, FLICKER_WINDOWS_FLICKER, 4 * FLICKER_WINDOWS_FLICKER])
+            )
+    return found
+
+
+@settings(max_examples=60, deadline=None)
+@given(intervals=flicker_windows_courses(), data=st.data())
+def test_where_nothing_changes_for_two_flickers_both_sides_are_resolved_alone(
+    intervals: list[Interval], data: st.DataObject
+) -> None:
+    end = max(changes(intervals)) + 2 * FLICKER_WINDOWS_FLICKER
+    cuts = [
+        frame
+        for frame in range(FLICKER_WINDOWS_FLICKER, end - FLICKER_WINDOWS_FLICKER)
+        if not changes(intervals)
+        & set(range(frame - FLICKER_WINDOWS_FLICKER + 1, frame + FLICKER_WINDOWS_FLICKER + 1))
+    ]
+    assume(cuts)
+    cut = data.draw(st.sampled_from(cuts))
+    parts = flicker_windows_doubts(scene(intervals, 0, cut)) | flicker_windows_doubts(
+        scene(intervals, cut + 1, end)
+    )
+    assert parts == flicker_windows_doubts(scene(intervals, 0, end))
+
+
+def chatter(draw_lengths: list[int]) -> list[Interval]:
+    """A contact that is lost and found every few frames, throughout."""
+    found: list[Interval] = []
+    frame = FLICKER_WINDOWS_FLICKER
+    while frame < LAST - 4 * FLICKER_WINDOWS_FLICKER:
+        length, gap = (draw_lengths[(len(found) + shift) % len(draw_lengths)] for shift in (0, 1))
+        found.append(Touching("hand", "mug", frame, frame + length - 1))
+        frame += length + gap
+    return found
+
+
+@settings(max_examples=8, deadline=None)
+@given(lengths=st.lists(st.integers(1, FLICKER_WINDOWS_FLICKER - 1), min_size=1, max_size=6))
+def test_flicker_that_never_ends_is_resolved_a_window_at_a_time(lengths: list[int]) -> None:
+    """What comes after a window and two flickers does not change what is doubted in it."""
+    intervals = chatter(lengths)
+    whole = flicker_windows_doubts(scene(intervals, 0, LAST))
+    for windows in (1, 2):
+        end = windows * WINDOW + FLICKER_WINDOWS_FLICKER
+        seen = flicker_windows_doubts(scene(intervals, 0, end + 2 * FLICKER_WINDOWS_FLICKER))
+        assert {each for each in seen if last(each) < end} == {
+            each for each in whole if last(each) < end
+        }
+
+
+def last(fact: Fact) -> int:
+    assert isinstance(fact, FlickerCorrection)
+    return fact.last
+
+
+@pytest.mark.parametrize("windows", [1, 2])
+def test_what_holds_at_the_end_of_a_window_is_believed(windows: int) -> None:
+    intervals = chatter([1])
+    end = intervals[0].first + windows * WINDOW - 1
+    found = [
+        each
+        for each in flicker_windows_doubts(scene(intervals, 0, LAST))
+        if isinstance(each, FlickerCorrection)
+    ]
+    assert [each for each in found if each.first <= end <= each.last] == []
+    assert found, "the rest of the flicker is resolved"
+
+
+SPANS = st.lists(
+    st.tuples(st.integers(0, 60), st.integers(0, 20)).map(lambda each: (each[0], sum(each))),
+    max_size=8,
+)
+
+
+@given(SPANS, SPANS, st.sets(st.integers(0, 80)))
+def test_a_rest_counts_from_the_last_tick_of_it_that_lies_in_a_contact(rests, contacts, others):
+    ticks = sorted(others | {0, 80} | {frame for span in contacts for frame in span})
+    own = sorted(Touching("hand", "box", *each) for each in contacts)
+    found = set(undisturbed("hand", ticks, [Resting("hand", *each) for each in rests], own))
+    expected = set()
+    for first, last in rests:
+        inside = [at for at, frame in enumerate(ticks) if first <= frame <= last]
+        touched = [at for at in inside if any(a <= ticks[at] <= b for a, b in contacts)]
+        if inside and not touched:
+            expected.add(Undisturbed("hand", inside[0], inside[-1]))
+        elif touched and inside[0] < touched[-1] < inside[-1]:
+            expected.add(Undisturbed("hand", touched[-1], inside[-1]))
+    assert found == expected
+
+
+FRAMES = 200
+
+
+def sharing_contacts(ee: str) -> st.SearchStrategy[list[Touching]]:
+    """Contacts of an end-effector with two things, those with the same one apart."""
+    ends = st.lists(st.integers(0, FRAMES), min_size=2, max_size=8, unique=True).map(sorted)
+
+    def made(mug: list[int], box: list[int]) -> list[Touching]:
+        pairs = [
+            (name, first, last)
+            for name, frames in (("mug", mug), ("box", box))
+            for first, last in zip(frames[::2], frames[1::2], strict=False)
+        ]
+        return sorted(
+            (Touching(ee, name, first, last) for name, first, last in pairs),
+            key=lambda each: each.first,
+        )
+
+    return st.builds(made, ends, ends)
+
+
+ticks_of = st.sets(st.integers(1, FRAMES - 1)).map(lambda each: sorted({0, FRAMES} | each))
+
+
+@given(sharing_contacts("right_hand"), sharing_contacts("left_hand"))
+def test_every_pair_that_shares_object_and_frame_is_found(
+    own: list[Touching], others: list[Touching]
+) -> None:
+    found = overlapping(own, [by_object(others)])
+    assert sorted(found) == sorted(
+        (one, other)
+        for one in own
+        for other in others
+        if one.other == other.other and one.first <= other.last and other.first <= one.last
+    )
+
+
+@given(sharing_contacts("right_hand"), sharing_contacts("left_hand"), ticks_of)
+def test_a_change_meanwhile_lies_between_its_tick_and_the_next(
+    own: list[Touching], others: list[Touching], ticks: list[int]
+) -> None:
+    pairs = overlapping(own, [by_object(others)])
+    facts = list(shared("right_hand", ticks, pairs, rate_hz=100.0))
+    spans = {(each.other, each.first): each for each in others}
+    for each in facts:
+        if isinstance(each, Meanwhile):
+            contact = spans[each.object, each.since]
+            frame = contact.first if each.kind == "begins" else contact.last
+            assert ticks[each.tick] <= frame <= ticks[each.tick + 1]
+            assert any(one.other == each.object and one.first <= frame <= one.last for one in own)
+    inside = [each for each in pairs if each[0].first <= each[1].first]
+    begins = [each for each in facts if isinstance(each, Meanwhile) and each.kind == "begins"]
+    assert len(begins) == len(inside)
+
+
+@given(sharing_contacts("right_hand"), sharing_contacts("left_hand"))
+def test_what_one_shares_before_the_other_shares_after(
+    own: list[Touching], others: list[Touching]
+) -> None:
+    ticks = [0, FRAMES]
+    mine = overlapping(own, [by_object(others)])
+    yours = overlapping(others, [by_object(own)])
+    before = [
+        each for each in shared("right_hand", ticks, mine, rate_hz=100.0)
+        if isinstance(each, Shares) and each.when == "before"
+    ]  # fmt: skip
+    after = [
+        each for each in shared("left_hand", ticks, yours, rate_hz=100.0)
+        if isinstance(each, Shares) and each.when == "after"
+    ]  # fmt: skip
+    assert len(before) == len(after)
+    assert {each.object for each in before} == {each.object for each in after}
+
+
+"""How long a process that checks untrusted rules may run: no time of a capture."""
+
+
+def test_times_are_those_of_the_rules() -> None:
+    text = rule_file("thresholds.lp").read_text()
+    assert f"#const merge_ms = {times().merge_ms}." in text
+    assert f"#const flicker_ms = {times().flicker_ms}." in text
+    assert in_frames(150, 100.0) == 15.0
+
+
+def test_borders_that_could_merge_may_not_be_cut_apart() -> None:
+    with pytest.raises(RuleError, match="merge_ms <= settled_ms"):
+        replace(times(), merge_ms=250, settled_ms=200, margin_ms=1000)
+
+
+INVERSE = {
+    "meets": "metBy", "starts": "startedBy", "finishes": "finishedBy", "during": "contains",
+    "overlaps": "overlappedBy", "equals": "equals",
+}  # fmt: skip
+BOTH = INVERSE | {other: one for one, other in INVERSE.items()}
+
+
+def link(ee: str, borders: list[int], frames: int) -> LinkSteps:
+    """A link whose steps lie between borders, in frames."""
+    steps = (
+        Step("Reach", ee, (), float(Fraction(last - first, frames)), "",
+             float(Fraction(first, frames)), (index,), "")
+        for index, (first, last) in enumerate(itertools.pairwise(borders))
+    )  # fmt: skip
+    return LinkSteps(ee, tuple(steps))
+
+
+@st.composite
+def two(draw: st.DrawFn) -> tuple[int, list[int], list[int]]:
+    """How many frames there are, and the borders of two links in them."""
+    frames = draw(st.integers(10, 2000))
+    borders = st.lists(st.integers(1, frames - 1), max_size=6, unique=True)
+    one, other = ([0, *sorted(draw(borders)), frames] for _ in range(2))
+    return frames, one, other
+
+
+@given(two())
+def test_relations_are_told_as_their_frames_have_them(case: tuple[int, list[int], list[int]]):
+    frames, one, other = case
+    found = {
+        (each.first[1], each.second[1]): each.relation
+        for each in _relations((link("a", one, frames), link("b", other, frames)), frames)
+    }
+    expected = {}
+    for i, (first, last) in enumerate(itertools.pairwise(one)):
+        for j, (begin, end) in enumerate(itertools.pairwise(other)):
+            if begin <= last and first <= end:
+                expected[i, j] = allen(first, last, begin, end)
+    assert found == expected
+
+
+@given(st.lists(st.integers(0, 6), min_size=4, max_size=4))
+def test_of_two_intervals_each_has_the_inverse_relation_to_the_other(ends: list[int]):
+    first, last, begin, end = ends
+    if first < last and begin < end:
+        relation = allen(first, last, begin, end)
+        back = allen(begin, end, first, last)
+        assert back == (BOTH | {"before": "after", "after": "before"})[relation]
