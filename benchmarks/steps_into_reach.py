@@ -17,13 +17,13 @@ from typing import Any
 from capar.body.human import Human
 from capar.body.scripted_actions import action_capture
 from capar.pipelines.observation import observe
-from capar.pipelines.preparation import approached
 from capar.pipelines.round_trips import body, numbered_scene, observed_source
 from capar.regeneration import PlanError, regenerate
 from capar.regeneration.captures import capture_of, capture_of_steps
 from capar.regeneration.planning import beside, why_unreachable
 from capar.regeneration.scenes import DRAWS, Scene
 from capar.regeneration.sources import Source
+from capar.regeneration.stepping import approached
 from capar.regeneration.styles import own_style
 
 SEED = 7

@@ -150,9 +150,6 @@ class Instance:
 
         What does not stand where it is put in the end is put there in that thing's measures.
 
-        Args:
-            scene: Where it is performed.
-
         Returns:
             Both, and the scene's names by the recorded ones.
         """
@@ -182,13 +179,6 @@ def instantiate(
     ask: Ask | None = None,
 ) -> Instance:
     """Bind every part of a recorded action, and check that it is applicable.
-
-    Args:
-        asked: What is to be done.
-        recording: The recording that holds it.
-        source: That recording, ready to be performed.
-        known: What is known of kinds and abilities.
-        ask: Asks a user where several things fit a part; None where there is nobody to ask.
 
     Raises:
         UnknownNameError: A part or a thing that was stated does not exist.
@@ -251,11 +241,6 @@ def find_action(
 
     Of several, those with things of the stated names count first, then the one with the fewest
     steps of all hands, then the first by name.
-
-    Args:
-        name: Of the action, a recorded one or a primitive.
-        recordings: What can be performed.
-        roles: Names of recorded things that it has to have.
 
     Raises:
         UnknownNameError: No recording holds it.

@@ -40,10 +40,6 @@ def observed_plan(observation: Observation) -> PlanSource:
 def stored_plan(actionary: Actionary, name: str) -> PlanSource:
     """The complex action of an observation in an Actionary.
 
-    Args:
-        actionary: Where it is.
-        name: Of the observation, or of its action.
-
     Raises:
         UnknownNameError: There is none of that name.
     """
@@ -77,10 +73,6 @@ def capture_plan(capture: Path | str) -> PlanSource:
 
 def plan_files(source: PlanSource, format_name: str) -> dict[str, str]:
     """A plan as text by file name; PDDL has two files.
-
-    Args:
-        source: The complex action.
-        format_name: One of ``PLAN_FORMATS``.
 
     Raises:
         UnknownNameError: There is no such format.

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 from jaxtyping import Float
@@ -28,7 +27,7 @@ from capar.regeneration.collisions import Surroundings
 from capar.regeneration.efforts import EffortReport
 from capar.regeneration.goals import put_down_poses
 from capar.regeneration.motion import Motion
-from capar.regeneration.planning import beside, check_stance, is_possible, why_unreachable
+from capar.regeneration.planning import is_possible
 from capar.regeneration.quality import (
     HEAD,
     TOUCHES_M,
@@ -38,6 +37,7 @@ from capar.regeneration.quality import (
     Quality,
     contact_gate,
     contacts_of,
+    failures,
 )
 from capar.regeneration.roles import (
     Kinds,
@@ -52,8 +52,6 @@ from capar.regeneration.scenes import PlanError, Scene, mobile, moved
 from capar.regeneration.search import regenerate
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import Source, source_of
-from capar.regeneration.stepping import STRIDE, Stepping, step_to, stepping_quality
-from capar.regeneration.styles import Style
 from capar_rules.engine.solver import Answer, Term, best, rule_file, text_of
 
 MARGIN_S = 0.3
@@ -81,17 +79,11 @@ class Way:
         return len(self.source.times) - 1
 
     def relations(self, number: int) -> dict[str, tuple[str, str]]:
-        """The bits of a step before and after it: of ``touch``, and of ``stand`` if it has any.
-
-        Args:
-            number: Of the step.
-        """
+        """The bits of a step before and after it: of ``touch``, and of ``stand`` if it has any."""
         features = self.steps[number].ipar.core.constraint.features
-        found = {"touch": (features.rel_start[0], features.rel_end[0])}
-        if features.count > 1:
-            place = features.count
-            found["stand"] = (features.rel_start[place], features.rel_end[place])
-        return found
+        rows, count = (features.rel_start, features.rel_end), features.count
+        found = {"touch": (rows[0][0], rows[1][0])}
+        return found | ({"stand": (rows[0][count], rows[1][count])} if count > 1 else {})
 
     def moves(self, number: int) -> bool:
         """Whether a step moves the thing."""
@@ -105,11 +97,6 @@ class Way:
 
     def part_of(self, first: int, last: int, side: str) -> Source:
         """Some steps of it, one after the other, with a hand.
-
-        Args:
-            first: Number of the first step.
-            last: Number of the last one.
-            side: Of the hand.
 
         Raises:
             PlanError: What is cut out does not determine a performance.
@@ -125,17 +112,11 @@ class Way:
 
 
 def ways_of(recordings: Iterable[Recording], open_source: Open) -> tuple[Way, ...]:
-    """The recordings among some in which one hand handles one thing and nothing else is done.
-
-    Args:
-        recordings: What can be performed.
-        open_source: Observes one.
-    """
+    """The recordings among some in which one hand handles one object and nothing else is done."""
     found = []
     for recording in recordings:
-        acting = {s.ee for s in recording.steps if s.ee.endswith("_hand") and len(s.objects)}
-        handled = {step.objects[0] for step in recording.steps}
-        if len(acting) == 1 and len(handled) == 1:
+        acting = {s.ee for s in recording.steps if s.ee.endswith("_hand") and s.objects}
+        if len(acting) == 1 and len({step.objects[0] for step in recording.steps}) == 1:
             found += _way(recording, open_source)
     return tuple(found)
 
@@ -178,11 +159,7 @@ def steps_of(observation: Observation) -> PlanSource:
 
 
 def asserted(source: Source) -> list[Asserted]:
-    """What the steps of a performance assert at their ends, in order of time.
-
-    Args:
-        source: What is performed.
-    """
+    """What the steps of a performance assert at their ends, in order of time."""
     names = {name: name for name in source.paths} | {HEAD: HEAD}
     names |= {hand.sensor: side for side, hand in source.hands.items()}
     last = len(source.times) - 1
@@ -227,7 +204,7 @@ Spot = tuple[float, float, float]
 
 
 class Room:
-    """Distances between things of a scene, wherever they are put."""
+    """Distances between objects of a scene, wherever they are put."""
 
     def __init__(self, human: Human, scene: Scene) -> None:
         self.human, self.scene = human, scene
@@ -235,35 +212,32 @@ class Room:
         self.rest = Solver(human, (*scene.place, scene.floor_m), scene.heading).rest
 
     def near(self, poses: Mapping[str, RigidTransform], within_m: float) -> set[frozenset[str]]:
-        """The things that are nearer to each other than so much.
-
-        Args:
-            poses: Of things that are not where the scene has them.
-            within_m: The distance [m].
-        """
+        """The objects nearer to each other than so much [m], some being elsewhere."""
         usual = {name: thing.pose for name, thing in self.scene.things.items()}
         self.around.pose(self.rest, {**usual, **poses})
         pairs = self.around.things_near()
         return {frozenset((p.part, p.thing)) for p in pairs if p.distance_m < within_m}
 
-    def meet(self, first: str, at: RigidTransform, second: str, there: RigidTransform) -> bool:
-        """Whether there is no room for two things, each at a pose."""
-        return frozenset((first, second)) in self.near({first: at, second: there}, ROOM_M)
-
     def places(
         self, name: str, support: str, keep_off: Mapping[str, RigidTransform]
     ) -> tuple[Spot, ...]:
-        """Free places for a thing on another one within an arm's length, nearest first.
+        """Free places for an object on another one within an arm's length, nearest first.
 
-        Args:
-            name: The thing.
-            support: What it is put on.
-            keep_off: Where other things will be that have to have room besides.
+        Other objects will be where ``keep_off`` has them, and need room besides.
         """
-        found: list[Spot] = []
         thing, tops = self.scene.thing(name), self.scene.thing(support)
-        height = _top(tops) - float(_corners(thing)[0, 2] - thing.place[2])
-        for x, y in sorted(self._grid(tops), key=lambda spot: self._far(thing, spot)):
+        low, high = _corners(tops)
+        height = float(high[2] - _corners(thing)[0, 2] + thing.place[2])
+        spots = [
+            (float(x), float(y))
+            for x in np.arange(low[0] + 0.5 * STEP_M, high[0], STEP_M)
+            for y in np.arange(low[1] + 0.5 * STEP_M, high[1], STEP_M)
+            if np.hypot(*np.subtract((x, y), self.scene.place))
+            <= ARM * self.human.measures["stature"]
+        ]
+        spots.sort(key=lambda spot: float(np.hypot(*np.subtract(spot, thing.place[:2]))))
+        found: list[Spot] = []
+        for x, y in spots:
             pose = RigidTransform.from_components([x, y, height], thing.pose.rotation)
             if _within(thing, pose, tops) and self._free(name, support, pose, keep_off):
                 found.append((x, y, height))
@@ -271,40 +245,20 @@ class Room:
                 break
         return tuple(found)
 
-    def _grid(self, support: Thing) -> Iterator[tuple[float, float]]:
-        (low_x, low_y, _), (high_x, high_y, _) = _corners(support)
-        for x in np.arange(low_x + 0.5 * STEP_M, high_x, STEP_M):
-            for y in np.arange(low_y + 0.5 * STEP_M, high_y, STEP_M):
-                away = np.hypot(x - self.scene.place[0], y - self.scene.place[1])
-                if away <= ARM * self.human.measures["stature"]:
-                    yield float(x), float(y)
-
-    def _far(self, thing: Thing, spot: tuple[float, float]) -> float:
-        return float(np.hypot(spot[0] - thing.place[0], spot[1] - thing.place[1]))
-
     def _free(
         self, name: str, support: str, pose: RigidTransform, keep_off: Mapping[str, RigidTransform]
     ) -> bool:
         others = {other: keep_off[other] for other in keep_off if other != name}
-        for poses in ({name: pose}, {name: pose, **others}):
-            near = self.near(poses, ASIDE_M)
-            if any(name in pair and support not in pair for pair in near):
-                return False
-        return True
-
-
-def standing_places(scene: Scene) -> tuple[str, ...]:
-    """Fixed things on which others can be put, sorted."""
-    return tuple(sorted(t.name for t in scene.things.values() if t.tag is TagType.FIXED))
+        return not any(
+            name in pair and support not in pair
+            for poses in ({name: pose}, {name: pose, **others})
+            for pair in self.near(poses, ASIDE_M)
+        )
 
 
 def _corners(thing: Thing) -> Float[np.ndarray, "2 3"]:
     spots = thing.pose.apply(np.array(thing.shape.vertices))
     return np.stack([spots.min(axis=0), spots.max(axis=0)])
-
-
-def _top(thing: Thing) -> float:
-    return float(_corners(thing)[1, 2])
 
 
 def _within(thing: Thing, pose: RigidTransform, support: Thing) -> bool:
@@ -366,11 +320,6 @@ def problem_of(instance: Instance, world: World, kinds: Kinds) -> Problem:
     preparatory specifications say; where things are put there is room; what is moved bears nothing
     that it did not bear.
 
-    Args:
-        instance: The action.
-        world: As it is.
-        kinds: The hierarchy of kinds.
-
     Raises:
         PlanError: Something would be put down where nothing supports it.
     """
@@ -423,16 +372,11 @@ class Place:
 
 
 def places_of(problem: Problem, ways: Sequence[Way]) -> tuple[Place, ...]:
-    """Where things may be put: free places, and as far from where they stand as was recorded.
-
-    Args:
-        problem: The scene, and what has to stay clear.
-        ways: What can be done.
-    """
-    scene = problem.world.scene
-    found = []
+    """Where things may be put: free places, and as far from where they stand as was recorded."""
+    scene, found = problem.world.scene, list[Place]()
+    fixed = sorted(n for n, thing in scene.things.items() if thing.tag is TagType.FIXED)
     for name in mobile(scene):
-        for support in standing_places(scene):
+        for support in fixed:
             for number, spot in enumerate(problem.room.places(name, support, problem.goals)):
                 pose = RigidTransform.from_components(spot, scene.thing(name).pose.rotation)
                 found.append(Place(("spot", name, support, number), name, support, pose))
@@ -461,12 +405,7 @@ def _slid(problem: Problem, way: Way, thing: Thing) -> list[Place]:
 
 
 def world_facts(problem: Problem, places: Sequence[Place]) -> Iterator[str]:
-    """Where everything is, what is wanted, and what has no room beside what.
-
-    Args:
-        problem: The world.
-        places: Where things may be put.
-    """
+    """Where everything is, what is wanted, and what has no room beside what."""
     scene = problem.world.scene
     for side, thing in sorted(problem.world.touching):
         yield _fact("touches_first", side, thing)
@@ -502,8 +441,9 @@ def _meetings(problem: Problem, places: Sequence[Place]) -> Iterator[str]:
                 if place.thing in pair and not _agreed(problem, place, other):
                     yield _fact("meets", place.thing, place.term, other, ("start", other))
         for there in places:
-            if _may_meet(problem, place, there) and problem.room.meet(
-                place.thing, place.pose, there.thing, there.pose
+            both = {place.thing: place.pose, there.thing: there.pose}
+            if _may_meet(problem, place, there) and frozenset(both) in problem.room.near(
+                both, ROOM_M
             ):
                 yield _fact("meets", place.thing, place.term, there.thing, there.term)
 
@@ -521,13 +461,7 @@ def _may_meet(problem: Problem, place: Place, there: Place) -> bool:
 
 
 def way_facts(problem: Problem, ways: Sequence[Way], places: Sequence[Place]) -> Iterator[str]:
-    """What recordings can do with either hand and anything that can be moved.
-
-    Args:
-        problem: The world.
-        ways: The recordings.
-        places: Where things may be put.
-    """
+    """What recordings can do with either hand and anything that can be moved."""
     scene = problem.world.scene
     for way in ways:
         name = way.recording.name
@@ -619,11 +553,6 @@ def shortest(
 ) -> tuple[tuple[Stage, ...], tuple[Condition, ...]]:
     """The shortest plan that makes true all that is wanted.
 
-    Args:
-        problem: What is wanted.
-        ways: What can be done.
-        failed: What was tried and is not possible.
-
     Returns:
         What recordings do, in order, and what no plan makes true; one of them is empty.
     """
@@ -653,21 +582,15 @@ def _why(problem: Problem, condition: Condition, ways: Sequence[Way]) -> str:
     known = ", ".join(sorted({way.recording.name for way in ways})) or "none"
     if condition[0] == "clear":
         name = condition[1]
-        near = problem.room.near({name: problem.goals[name]}, 0.01)
-        there = sorted({other for pair in near if name in pair for other in pair - {name}})
+        near = problem.room.near({name: problem.goals[name]}, ROOM_M)
+        there = sorted(set().union(*(pair for pair in near if name in pair)) - {name})
         there = [other for other in there if other not in problem.parts]
-        fixed = [other for other in there if scene.thing(other).tag is TagType.FIXED]
-        if fixed:
-            return (
-                f"{said}: {fixed[0]!r} is there and is fixed; another place for {name!r} would do"
-            )
-        return (
-            f"{said}: {', '.join(there)} is there, and no recording puts it elsewhere within reach "
-            f"(tried: {known}); a recording that carries such a thing, or more room, would do"
-        )
+        said += f": {', '.join(map(repr, there))} is there"
+        if any(scene.thing(other).tag is TagType.FIXED for other in there):
+            return f"{said} and is fixed; another place for {name!r} would do"
     return (
         f"{said}, and no recording makes it so (tried: {known}); a recording of one hand that does "
-        "with such a thing, or a scene in which it holds, would do"
+        "so with such an object, or a scene in which it holds, would do"
     )
 
 
@@ -687,22 +610,18 @@ def _stages(answer: Answer, ways: Sequence[Way], places: Sequence[Place]) -> tup
     rows: list[list[tuple[int, Planned, Term]]] = []
     for time, name, hand, thing, number in answer.of("does"):
         assert isinstance(time, int) and isinstance(number, int)
-        place = brought.get((time, thing))
+        place, who = brought.get((time, thing)), (str(name), str(hand), str(thing))
         step = Planned(
-            by_name[str(name)].steps[number].step.action, str(hand), str(thing), str(name), number,
+            by_name[who[0]].steps[number].step.action, who[1], who[2], who[0], number,
             _spot(place), place.support if place else "",
         )  # fmt: skip
-        row = (time, step, place.term if place else "any")
         last = rows[-1][-1][1] if rows else None
-        same = last and (last.recording, last.hand, last.thing) == (
-            str(name),
-            str(hand),
-            str(thing),
-        )
-        if last and same and last.number + 1 == number:
-            rows[-1].append(row)
-        else:
-            rows.append([row])
+        if last is None or (last.recording, last.hand, last.thing, last.number + 1) != (
+            *who,
+            number,
+        ):
+            rows.append([])
+        rows[-1].append((time, step, place.term if place else "any"))
     return tuple(
         Stage(
             by_name[row[0][1].recording],
@@ -776,19 +695,12 @@ class StageError(PlanError):
 
 
 def measured_world(source: Source) -> World:
-    """The scene of a recording as it begins, with what its hands touch then.
-
-    Args:
-        source: The recording.
-    """
+    """The scene of a recording as it begins, with what its hands touch then."""
     return _world(source.capture, source.observation, source.scene)
 
 
 def captured_world(place: Capture | Path | str) -> World:
     """The scene of a capture as it begins, with what the hands touch then.
-
-    Args:
-        place: The capture, or where it is described.
 
     Raises:
         CaparError: It has a fault, no sensor of the head, or a thing without a shape.
@@ -810,40 +722,33 @@ def prepare(
 ) -> Prepared:
     """Make true what an action needs, by the shortest plan that can be performed well.
 
-    Args:
-        instance: The action.
-        world: As it is measured.
-        kinds: The hierarchy of kinds.
-        ways: Opens the recordings of which a plan can be made; asked only if one is needed.
+    ``ways`` opens the recordings of which a plan can be made, only if one is needed.
 
     Raises:
         PlanError: No plan makes it true; the message says what does not hold and what would help.
     """
     problem = problem_of(instance, world, kinds)
-    lacking = unmet(problem)
+    lacking = left = unmet(problem)
     if not lacking:
         return Prepared(problem.wanted, (), (), world, ())
     known, failed, tried = ways(), list[Failed](), list[str]()
     while len(tried) < MOST_TRIES:
         stages, left = shortest(problem, known, failed)
         if left:
-            raise PlanError(_refusal(why_unmet(problem, left, known), tried))
+            break
         try:
             done, after = _performed(stages, world, instance.asked.human)
         except StageError as error:
             failed.append(error.failed)
             tried.append(str(error))
+            left = lacking
             continue
-        still = unmet(problem_of(instance, after, kinds))
-        if still:
+        if still := unmet(problem_of(instance, after, kinds)):
             said = ", ".join(told(condition) for condition in still)
             raise PlanError(f"by the plan {said} holds, and not by geometry, after all its steps")
         return Prepared(problem.wanted, lacking, done, after, tuple(tried))
-    raise PlanError(_refusal(why_unmet(problem, lacking, known), tried))
-
-
-def _refusal(why: str, tried: Sequence[str]) -> str:
-    return f"{why}; not possible were: {'; '.join(tried)}" if tried else why
+    why = why_unmet(problem, left, known)
+    raise PlanError(f"{why}; not possible were: {'; '.join(tried)}" if tried else why)
 
 
 def _performed(
@@ -854,22 +759,21 @@ def _performed(
     for stage in stages:
         _check_before(stage, world)
         made.append(_stage(stage, world, human))
-        world = _after(made[-1], world)
+        scene = scene_after(made[-1].motion, made[-1].names, world.scene)
+        world = World(scene, _touching(made[-1].motion, made[-1].names))
     return tuple(made), world
 
 
 def _check_before(stage: Stage, world: World) -> None:
     """What the first step needs holds by geometry."""
     step = stage.steps[0]
-    relations = stage.way.relations(step.number)
-    touches = (step.hand, step.thing) in world.touching
-    if relations["touch"][0] != str(int(touches)):
-        verb = "does not touch" if not touches else "touches"
-        raise StageError(stage, f"by geometry the {step.hand} hand {verb} {step.thing!r} before it")
-    stands = bool(world.scene.support(step.thing))
-    if "stand" in relations and relations["stand"][0] != str(int(stands)):
-        verb = "stands on something" if stands else "stands on nothing"
-        raise StageError(stage, f"by geometry {step.thing!r} {verb} before it")
+    now = {
+        "touch": (step.hand, step.thing) in world.touching,
+        "stand": bool(world.scene.support(step.thing)),
+    }
+    for relation, (before, _) in stage.way.relations(step.number).items():
+        if before != str(int(now[relation])):
+            raise StageError(stage, f"by geometry {relation} is {now[relation]} before it")
 
 
 def _stage(stage: Stage, world: World, human: Human) -> Done:
@@ -891,12 +795,7 @@ def _stage(stage: Stage, world: World, human: Human) -> Done:
     gate = contact_gate(motion, [*asserted(made), _planned(stage, made, names)])
     quality = Quality((*quality.gates, gate), quality.told)
     if not quality.passed:
-        said = "; ".join(
-            f"{one.name} {one.value:.1f} {one.unit} ({one.bodies})"
-            for one in quality.gates
-            if not one.passed
-        )
-        raise StageError(stage, f"it fails {said}")
+        raise StageError(stage, f"it fails {failures(quality)}")
     return Done(motion, quality, names, stage)
 
 
@@ -923,12 +822,6 @@ def _planned(stage: Stage, source: Source, names: dict[str, str]) -> Asserted:
     return Asserted("the plan's stage", len(source.times) - 1, tuple(contacts), "")
 
 
-def _after(done: Done, world: World) -> World:
-    """The world as geometry has it after a stage."""
-    scene = scene_after(done.motion, done.names, world.scene)
-    return World(scene, _touching(done.motion, done.names))
-
-
 def _touching(motion: Motion, names: dict[str, str]) -> Touching:
     near = Measuring(motion).distances(len(motion.postures) - 1)
     return frozenset(
@@ -936,220 +829,3 @@ def _touching(motion: Motion, names: dict[str, str]) -> Touching:
         for (side, thing), apart_m in near.items()
         if side in {"right", "left"} and thing in names and apart_m <= TOUCHES_M
     )
-
-
-PROGRAM_STANCES = "planning/stepping.lp"
-
-GRID_M = 0.1
-AHEAD, ASIDE = range(-3, 11), range(-5, 6)
-"""The places that are considered, from the given one ahead and to the left [grid steps]."""
-
-FARTHEST_M = GRID_M * AHEAD[-1]
-"""How far ahead it is stepped at most [m]."""
-
-REACH = 0.62
-"""No posture reaches the middle of a thing farther away on the floor [share of stature]
-(estimate)."""
-
-HIGHEST = 1.3
-"""Nor higher above the floor [share of stature] (estimate)."""
-
-MOST_STEPS_STANCES, MOST_TRIES_STANCES = 6, 6
-"""So many places are gone to one after the other at most, and so many are tried of those that are
-as many steps away [1]."""
-
-MOST_TOLD = 3
-"""So many of them are told where none helps [1]."""
-
-Made = TypeVar("Made")
-Spot_stances = tuple[int, int]
-"""Of the grid: ahead and to the left."""
-
-
-@dataclass(frozen=True, eq=False)
-class Approach:
-    """Steps that prepare an action."""
-
-    why: str
-    """Why they are needed."""
-
-    steps: Stepping
-    quality: Quality
-    ahead_m: float
-    aside_m: float
-    """How far ahead and to the left they lead."""
-
-    tried: tuple[str, ...]
-    """Other places, and why the action is not possible there."""
-
-
-def approached(
-    source: Source,
-    human: Human,
-    scene: Scene,
-    style: Style,
-    act: Callable[[Scene], tuple[Made, Quality]],
-) -> tuple[Approach | None, Made, Quality]:
-    """Perform an action where it can be done, after as few steps there as the solver finds.
-
-    Args:
-        source: The recorded performance.
-        human: Who performs.
-        scene: Where, and where the performer stands at first.
-        style: How it is done.
-        act: Performs it in a scene; raises PlanError where that is not possible.
-
-    Returns:
-        The steps, None where none is needed; what was performed, and how good it is.
-
-    Raises:
-        PlanError: The performer stands in something, or it is out of reach and no step helps.
-    """
-    check_stance(scene, human)
-    why = _beyond(source, human, scene) or why_unreachable(source, scene, human, style)
-    if why is None:
-        return None, *act(replace(scene, stays=True))
-    spots = {spot: beside(scene, *_metres(spot)) for spot in _free_spots(scene, human)}
-    facts, failed = list(_facts(source, human, scene, spots)), dict[Spot_stances, str]()
-    for steps in range(1, MOST_STEPS_STANCES + 1):
-        for _ in range(MOST_TRIES_STANCES):
-            way = _way_stances(facts, failed, steps)
-            if not way:
-                break
-            found = _tried(source, human, scene, [spots[spot] for spot in way], act)
-            if isinstance(found, str):
-                failed[way[-1]] = found
-                continue
-            made, quality, walked, walked_quality = found
-            tried = tuple(_told(spot, said) for spot, said in failed.items())
-            approach = Approach(why, walked, walked_quality, *_metres(way[-1]), tried)
-            return approach, made, quality
-    said = [_told(spot, reason) for spot, reason in failed.items()]
-    raise PlanError(
-        f"{why}; no step helps of {len(failed)} places that were tried "
-        f"({'; '.join(said[:MOST_TOLD])}{'; and so on' if len(said) > MOST_TOLD else ''})"
-        if failed
-        else f"{why}; no step helps, since nothing nearer is free or it is too high"
-    )
-
-
-def _tried(
-    source: Source,
-    human: Human,
-    scene: Scene,
-    way: Sequence[Scene],
-    act: Callable[[Scene], tuple[Made, Quality]],
-) -> tuple[Made, Quality, Stepping, Quality] | str:
-    """Steps by some places and the action at the last, or why that is not possible."""
-    if not is_possible(source, replace(way[-1], stays=True), human):
-        return "out of reach"
-    walked = step_to(human, scene, *(there.place for there in way), rate_hz=source.rate_hz)
-    walked_quality = stepping_quality(walked)
-    if not walked_quality.passed:
-        return f"the steps there fail {_failed(walked_quality)}"
-    try:
-        made, quality = act(walked.after)
-    except PlanError as error:
-        return str(error)
-    if not quality.passed:
-        return f"it fails {_failed(quality)}"
-    return made, quality, walked, walked_quality
-
-
-def _failed(quality: Quality) -> str:
-    rows = (gate for gate in quality.gates if not gate.passed)
-    return ", ".join(f"{gate.name} {gate.value:.1f} {gate.unit} ({gate.bodies})" for gate in rows)
-
-
-def _told(spot: Spot_stances, why: str) -> str:
-    ahead_m, aside_m = _metres(spot)
-    return f"{ahead_m:+.1f} m ahead and {aside_m:+.1f} m to the left: {why}"
-
-
-def _metres(spot: Spot_stances) -> tuple[float, float]:
-    return GRID_M * spot[0], GRID_M * spot[1]
-
-
-def _free_spots(scene: Scene, human: Human) -> Iterator[Spot_stances]:
-    """Where somebody at ease stands in nothing; the first place is always one."""
-    around = Surroundings(human, scene)
-    posture = Solver(human, (*scene.place, scene.floor_m), scene.heading).rest
-    things = {name: thing.pose for name, thing in scene.things.items()}
-    for spot in ((ahead, aside) for ahead in AHEAD for aside in ASIDE):
-        there = posture.copy()
-        there[:2] += np.subtract(beside(scene, *_metres(spot)).place, scene.place)
-        around.pose(there, things)
-        if spot == (0, 0) or all(pair.distance_m >= 0.0 for pair in around.near()):
-            yield spot
-
-
-def _facts(
-    source: Source, human: Human, scene: Scene, spots: dict[Spot_stances, Scene]
-) -> Iterator[str]:
-    names = {_name(spot): spot for spot in spots}
-    wish = _wish(source, human, scene)
-    yield f"at_first({_name((0, 0))})."
-    for name, spot in names.items():
-        place = np.asarray(spots[spot].place)
-        yield f"stance({name})."
-        yield f"amiss({name},{round(1e3 * float(np.linalg.norm(place - wish)))})."
-        if not _beyond(source, human, spots[spot]):
-            yield f"useful({name})."
-        for other, there in names.items():
-            apart = GRID_M * float(np.hypot(there[0] - spot[0], there[1] - spot[1]))
-            if other != name and apart <= STRIDE * human.measures["stature"]:
-                yield f"within_step({name},{other})."
-
-
-def _beyond(source: Source, human: Human, scene: Scene) -> str:
-    """What is handled farther away or higher than any posture reaches, in words; empty if none."""
-    tall = human.measures["stature"]
-    for name in dict.fromkeys(hold.thing for hold in source.holds):
-        place = np.asarray(scene.thing(name).place)
-        far_m = float(np.linalg.norm(place[:2] - scene.place))
-        high_m = float(place[2]) - scene.floor_m
-        if far_m > REACH * tall:
-            more_m = far_m - REACH * tall
-            return (
-                f"{name!r} is {far_m:.1f} m away, {more_m:.1f} m farther than any posture reaches"
-            )
-        if high_m > HIGHEST * tall:
-            return f"{name!r} is {high_m:.1f} m above the floor, higher than any posture reaches"
-    return ""
-
-
-def _wish(source: Source, human: Human, scene: Scene) -> Float[np.ndarray, "2"]:
-    """Where the performer would stand by the things as the recorded one did, by stature [m]."""
-    names = [hold.thing for hold in source.holds]
-    old, new = (
-        np.mean([one.thing(name).place for name in names], axis=0)[:2]
-        for one in (source.scene, scene)
-    )
-    turn = scene.heading - source.scene.heading
-    away = (old - source.scene.place) * human.measures["stature"] / source.human.measures["stature"]
-    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-    return np.asarray(new - rotation @ away)
-
-
-def _way_stances(
-    facts: list[str], failed: dict[Spot_stances, str], steps: int
-) -> list[Spot_stances]:
-    """The best places one after the other; none where so many steps lead to no useful one."""
-    known = [f"failed({_name(spot)})." for spot in failed]
-    try:
-        answer: Answer = best(
-            [rule_file(PROGRAM_STANCES)], "\n".join([*facts, *known, f"horizon({steps})."])
-        )
-    except RuleError:
-        return []
-    rows = sorted(answer.of("stands"), key=lambda row: int(str(row[0])))
-    return [_spot_stances(row[1]) for row in rows[1:]]
-
-
-def _name(spot: Spot_stances) -> str:
-    return f"spot({spot[0]},{spot[1]})"
-
-
-def _spot_stances(term: object) -> Spot_stances:
-    assert isinstance(term, tuple)
-    return int(term[1]), int(term[2])

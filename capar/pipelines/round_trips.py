@@ -131,14 +131,7 @@ def body(agent: str, source: Source) -> Human:
 def round_trips(
     source: Source, agents: tuple[str, ...], *, scenes: int = 0, seed: int = 0
 ) -> Iterator[Trip]:
-    """Perform on every agent in every scene, and observe again.
-
-    Args:
-        source: What was recorded.
-        agents: Who performs.
-        scenes: How many scenes are drawn; 0 performs in the recorded one.
-        seed: Of the scenes.
-    """
+    """Perform on every agent in every scene, and observe again."""
     bodies = {agent: body(agent, source) for agent in agents}
     for number in range(1, scenes + 1) if scenes else (0,):
         scene = numbered_scene(source, number, seed)
@@ -147,29 +140,14 @@ def round_trips(
 
 
 def numbered_scene(source: Source, number: int, seed: int, draw: Draw = USUAL) -> Scene:
-    """The drawn scene of that number; 0 is the recorded one.
-
-    Args:
-        source: What was recorded.
-        number: Of the scene.
-        seed: Of all scenes.
-        draw: The ranges from which it is drawn.
-    """
+    """The drawn scene of that number; 0 is the recorded one."""
     if not number:
         return source.scene
     return drawn_scene(source.scene, np.random.default_rng([seed, number]), draw)
 
 
 def round_trip(source: Source, agent: str, human: Human, number: int, scene: Scene) -> Trip:
-    """Perform on one body in one scene, and observe again.
-
-    Args:
-        source: What was recorded.
-        agent: Name of who performs.
-        human: Likewise, the body.
-        number: Of the scene.
-        scene: Where it is performed.
-    """
+    """Perform on one body in one scene, and observe again."""
     try:
         motion, quality = regenerate(source, human, scene)
     except PlanError as error:
@@ -233,10 +211,6 @@ class JointTrip:
 def observed_joint_source(capture: Capture, *, rules: str = "extended") -> JointSource:
     """A capture of several performers, observed and ready to be performed.
 
-    Args:
-        capture: What was recorded.
-        rules: Profile by which it is observed.
-
     Raises:
         PlanError: The capture does not determine a performance.
     """
@@ -245,11 +219,6 @@ def observed_joint_source(capture: Capture, *, rules: str = "extended") -> Joint
 
 def bodies(agents: Sequence[str], source: JointSource) -> dict[str, Human]:
     """The bodies that perform, by the name of the recorded agent.
-
-    Args:
-        agents: Bodies in the order of the recorded agents, one for all, or ``NAME=BODY``; who is
-            not named performs with the recorded body.
-        source: What was recorded.
 
     Raises:
         UnknownNameError: There is no such agent or body.
@@ -284,14 +253,7 @@ def drawn_scenes(source: JointSource, number: int, seed: int) -> dict[str, Scene
 def joint_round_trips(
     source: JointSource, casts: Sequence[str], *, scenes: int = 0, seed: int = 0
 ) -> Iterator[JointTrip]:
-    """Perform with every cast in every scene, and observe again.
-
-    Args:
-        source: What was recorded.
-        casts: Bodies joined by plus signs.
-        scenes: How many scenes are drawn; 0 performs in the recorded one.
-        seed: Of the scenes.
-    """
+    """Perform with every cast in every scene, and observe again."""
     for number in range(1, scenes + 1) if scenes else (0,):
         where = drawn_scenes(source, number, seed)
         for agents in casts:
@@ -306,15 +268,7 @@ def joint_round_trip(
     number: int,
     scenes: Mapping[str, Scene],
 ) -> JointTrip:
-    """Perform with some bodies in one scene, and observe again.
-
-    Args:
-        source: What was recorded.
-        agents: How the bodies are called.
-        humans: The bodies, by the name of the recorded agent.
-        number: Of the scene.
-        scenes: Where it is performed, and where each one stands.
-    """
+    """Perform with some bodies in one scene, and observe again."""
     try:
         made = regenerate_together(source, humans, scenes)
     except PlanError as error:
@@ -323,14 +277,7 @@ def joint_round_trip(
 
 
 def compared(source: JointSource, agents: str, number: int, made: JointMotion) -> JointTrip:
-    """What comes out when the motions are observed again.
-
-    Args:
-        source: What was recorded.
-        agents: How the bodies are called.
-        number: Of the scene.
-        made: What was performed.
-    """
+    """What comes out when the motions are observed again."""
     capture = joint_capture_of(made, name=source.capture.name)
     first = source.observation
     again = observe(capture, rules=first.profile)

@@ -71,12 +71,6 @@ def read_requests(
 ) -> tuple[Request, ...]:
     """What a text asks for, in order.
 
-    Args:
-        text: In words.
-        vocabulary: The verbs that are known.
-        scene: The things that there are.
-        observed: The actions that can be performed; empty takes any.
-
     Raises:
         RequestError: The words cannot be read or ask a question, nobody was observed doing that,
             or a thing is not there.
@@ -276,11 +270,7 @@ def _parts(requests: Sequence[Request], steps: Sequence[Step]) -> dict[str, str]
 
 
 def observed_actions(recordings: Sequence[Recording]) -> frozenset[str]:
-    """Every action that a recording holds, the more general ones and names of the whole included.
-
-    Args:
-        recordings: What can be performed.
-    """
+    """Every action that a recording holds, with more general ones and names of wholes."""
     own = {step.action for each in recordings for step in each.steps}
     general = {
         name for each in recordings for action in own for name in each.general.get(action, ())

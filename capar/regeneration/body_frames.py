@@ -63,14 +63,6 @@ def free_pose(
 
     As far from ease as it was, or from where it takes the thing or lets it go, if it was nearer to
     that: a recording may begin when the hand is about to arrive.
-
-    Args:
-        source: The recorded performance.
-        old: The recorded body.
-        new: The new one.
-        side: Which hand.
-        frames: The one at which it is free, and the next or last one of the hold.
-        held: Where the new hand is in the latter.
     """
     free, holding = (source.hands[side].path[frame] for frame in frames)
     gone = free.translation - holding.translation

@@ -32,15 +32,7 @@ from capar.regeneration.stepping import Stepping
 def capture_of(
     motion: Motion, *, name: str, agent: str, tracker: Tracker = PERFECT, seed: int = 0
 ) -> Capture:
-    """What a tracker would have recorded of a motion.
-
-    Args:
-        motion: What was done.
-        name: Of the capture.
-        agent: Name of the performer.
-        tracker: Its faults; none, unless stated.
-        seed: Of its faults.
-    """
+    """What a tracker would have recorded of a motion."""
     plan = motion.plan
     measures = plan.human.measures
     kind = "child" if measures.adult_share < 0.5 else measures.adult
@@ -74,13 +66,7 @@ def renamed(capture: Capture, names: Mapping[str, str]) -> Capture:
 
 
 def scene_after(motion: Motion, names: Mapping[str, str], scene: Scene) -> Scene:
-    """The scene as a motion leaves it.
-
-    Args:
-        motion: What was done.
-        names: The scene's names of the things by those that the motion has.
-        scene: As it was before.
-    """
+    """The scene as a motion leaves it."""
     plan = motion.plan
     left = dict(scene.things)
     for name, thing in plan.scene.things.items():
@@ -476,12 +462,7 @@ def _check_keys(path: Path, where: str, row: Mapping[str, Any], known: set[str])
 
 
 def joint_capture_of(made: JointMotion, *, name: str) -> Capture:
-    """What a tracker would have recorded, its sensors called as in the recording.
-
-    Args:
-        made: What was done.
-        name: Of the capture.
-    """
+    """What a tracker would have recorded, its sensors called as in the recording."""
     captures = {
         who: capture_of(motion, name=name, agent=who) for who, motion in made.motions.items()
     }
@@ -517,13 +498,7 @@ AHEAD_M = 3.0
 
 
 def capture_of_steps(made: Stepping, *, name: str, agent: str) -> Capture:
-    """What a tracker would have recorded of steps; the floor is an object of it.
-
-    Args:
-        made: The steps.
-        name: Of the capture.
-        agent: Name of the performer.
-    """
+    """What a tracker would have recorded of steps; the floor is an object of it."""
     human, scene, count = made.human, made.scene, len(made.times)
     ground = Thing(
         "floor", box(*FLOOR_M), (*scene.place, scene.floor_m - FLOOR_M[2]), tag=TagType.FIXED

@@ -177,13 +177,7 @@ class Surroundings:
 
 
 def things_apart(scene: Scene, names: tuple[str, str], human: Human) -> float:
-    """The distance between two things as they stand; larger ones than ``NEAR_M`` count as that [m].
-
-    Args:
-        scene: Of the things.
-        names: Which two.
-        human: Whoever is in it.
-    """
+    """The distance between two things as they stand, no more than ``NEAR_M`` [m]."""
     around = Surroundings(human, scene)
     around.pose(human.posture(), {name: thing.pose for name, thing in scene.things.items()})
     found = (pair for pair in around.things_near() if {pair.part, pair.thing} == set(names))
@@ -192,11 +186,6 @@ def things_apart(scene: Scene, names: tuple[str, str], human: Human) -> float:
 
 def inner_gap(hollow: Shape, thing: Shape, seat: RigidTransform) -> float | None:
     """How far a thing is from the surface of a hollow one, negative where they cut [m].
-
-    Args:
-        hollow: What it may be in.
-        thing: Of which the convex hull counts.
-        seat: ``T_hollow_thing``.
 
     Returns:
         None where the first shape is not hollow.
@@ -272,12 +261,7 @@ class ClearTask(mink.Task):
     """
 
     def __init__(self, around: Surroundings, met: Collection[str] = ()) -> None:
-        """Watch all parts and things.
-
-        Args:
-            around: The body and the things.
-            met: Things that the head meets, from which it is not kept away.
-        """
+        """Watch all parts and things."""
         self.around = around
         self.pairs = [
             (geom, name)

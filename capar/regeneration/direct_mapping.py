@@ -26,10 +26,6 @@ HEAD_SHARE = 0.1
 def map_directly(source: Source, human: Human) -> tuple[Motion, Quality]:
     """Let a body do what was recorded, in the recorded scene, by direct mapping.
 
-    Args:
-        source: The recorded performance.
-        human: Who performs.
-
     Returns:
         The motion, and its gates; none of them is a condition here.
     """
@@ -38,12 +34,7 @@ def map_directly(source: Source, human: Human) -> tuple[Motion, Quality]:
 
 
 def mapped_plan(source: Source, human: Human) -> Plan:
-    """Where hands, things, head and gaze are at every frame by direct mapping.
-
-    Args:
-        source: The recorded performance.
-        human: Who performs.
-    """
+    """Where hands, things, head and gaze are at every frame by direct mapping."""
     scene = source.scene
     old, new = body_frames(source.human, scene), body_frames(human, scene)
     head = head_path(source, old, new)

@@ -125,11 +125,7 @@ def adverbs() -> dict[str, Effort]:
 
 
 def effort_of_words(words: Iterable[str]) -> Effort | None:
-    """The effort that some words ask for together, no further than to a pole; None if none does.
-
-    Args:
-        words: Adverbs; those that are not in the table ask for none.
-    """
+    """The effort that some words ask for together, no further than to a pole; None if none does."""
     found = [adverbs()[word] for word in words if word in adverbs()]
     if not found:
         return None
@@ -138,12 +134,7 @@ def effort_of_words(words: Iterable[str]) -> Effort | None:
 
 
 def told_of_words(words: Iterable[str], *, stated: bool) -> list[str]:
-    """What is told of the effect of some words.
-
-    Args:
-        words: Adverbs and others that name no action, thing or place.
-        stated: Whether an effort is stated besides, which is then taken.
-    """
+    """What is told of the effect of some words."""
     out = []
     for word in words:
         if word not in adverbs():
@@ -182,11 +173,6 @@ def timed(
     Speeds are raised to the power 2^time, so that the highest over the mean grows with time
     (sudden), and tilted by exp(SKEW * weight) towards the end, so that weight (strong) goes on
     accelerating for longer and light weight eases in.
-
-    Args:
-        shares: Of the way, as recorded, not decreasing.
-        time: From sustained to sudden.
-        weight: From light to strong.
     """
     speeds = np.diff(shares)
     peak = float(speeds.max())
@@ -200,13 +186,7 @@ def timed(
 def paused(
     shares: Float[np.ndarray, "frames"], flow: float, ends: tuple[bool, bool]
 ) -> Float[np.ndarray, "frames"]:
-    """Shares of the way with the pauses of bound flow.
-
-    Args:
-        shares: Of the way.
-        flow: Bound where above 0; nothing is changed below.
-        ends: Whether it may pause at the start and at the end.
-    """
+    """Shares of the way with the pauses of bound flow."""
     before, after = (PAUSE * max(flow, 0.0) * may for may in ends)
     time = np.linspace(0.0, 1.0, len(shares))
     inner = np.clip((time - before) / (1.0 - before - after), 0.0, 1.0)
@@ -215,10 +195,6 @@ def paused(
 
 def overshot(frames: int, flow: float) -> tuple[Float[np.ndarray, "frames"], ...]:
     """When the way is gone, and what is gone beyond its end, with free flow.
-
-    Args:
-        frames: How many.
-        flow: Free where below 0; nothing is changed above.
 
     Returns:
         The share of the recorded time at each frame, and the added share of the way.
@@ -313,11 +289,6 @@ def with_effort(style: Style, source: Source, effort: Effort) -> Style:
     Between events the speeds along each way are reshaped by time, weight and bound flow, and the
     shape of ways in free air by space, weight and free flow. How long everything takes is not
     changed here.
-
-    Args:
-        style: As it was recorded or borrowed.
-        source: What is done.
-        effort: How, compared with the style.
     """
     hands, things = dict(style.hands), dict(style.things)
     for side, path in style.hands.items():
@@ -494,10 +465,6 @@ def measured_effort(motion: Motion, style: Style) -> MeasuredEffort:
     are left out. Free flow is told by how far a hand goes beyond the end of these. Space is the one
     with which the ways become as much longer than straight as the performed ones are; ways that
     are led around something otherwise than without an effort are left out.
-
-    Args:
-        motion: What was performed.
-        style: How it was recorded, without an effort.
     """
     pairs = list(_pairs(motion, style))
     inner = [pair for pair in pairs if not pair.stretch.ends_free]

@@ -94,14 +94,6 @@ def flights(
     the masses of both arms and the thing's size carry over. A thing that is let go has the speed
     of the hand, in the recorded proportion.
 
-    Args:
-        source: The recorded performance.
-        scene: Where it is performed.
-        humans: The recorded body and the new one.
-        things: ``T_world_thing`` by name at every frame.
-        hands: ``T_world_hand`` by side at every frame.
-        kind: What is the same on the new body.
-
     Raises:
         PlanError: The hand would have to strike faster than it can.
     """
@@ -313,12 +305,6 @@ def with_tosses(source: Source, scene: Scene, name: str, path: RigidTransform) -
 
     A swing is changed by (u^3 - u^2) T dv before the thing is let go, and by u (1 - u)^2 T dv after
     it is caught, so that it keeps its ends and its other velocity.
-
-    Args:
-        source: The recorded performance.
-        scene: Where it is performed.
-        name: Of the thing.
-        path: ``T_world_thing`` at every frame, as it should be at both ends of each flight.
     """
     own = [toss for toss in source.tosses if toss.thing == name]
     if not own:
@@ -344,14 +330,7 @@ def with_tosses(source: Source, scene: Scene, name: str, path: RigidTransform) -
 
 
 def toss_notes(source: Source, scene: Scene, path: RigidTransform, name: str) -> list[str]:
-    """What is told of the flights of a thing.
-
-    Args:
-        source: The recorded performance.
-        scene: Where it is performed.
-        path: ``T_world_thing`` at every frame.
-        name: Of the thing.
-    """
+    """What is told of the flights of a thing."""
     out = []
     for toss in source.tosses:
         if toss.thing == name:

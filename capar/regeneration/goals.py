@@ -118,12 +118,7 @@ def planes_of(source: Source) -> dict[str, Constraint]:
 
 
 def scene_constraints(source: Source, scene: Scene) -> dict[str, Constraint]:
-    """Every constraint in the measures of the things of a scene.
-
-    Args:
-        source: What was recorded.
-        scene: Where it is performed.
-    """
+    """Every constraint in the measures of the things of a scene."""
     found = {**planes_of(source), **constraints_of(source)}
     return {
         name: constraint.scaled(_ratio(source, scene, name)) for name, constraint in found.items()
@@ -141,13 +136,6 @@ def guided_poses(
 
     It turns by the recorded angles, or goes as far in its own measures; while nobody holds it, it
     stays.
-
-    Args:
-        source: What was recorded.
-        scene: Where it is performed.
-        name: The thing.
-        recorded: Its recorded way, or the one of another style.
-        spans: The frames from which to which it is held.
     """
     before = constraints_of(source)[name]
     ratio = _ratio(source, scene, name)
@@ -239,14 +227,6 @@ def thing_goals(
     force: ForceKind = ForceKind.SIMILAR,
 ) -> dict[str, list[Goal]]:
     """The goals of every thing that is held, in order of time.
-
-    Args:
-        source: The recorded performance.
-        scene: Where it is performed.
-        old: Of the recorded body.
-        new: Of the one that performs.
-        force: What is kept of a throw to a hand: how far it flies level in proportion to the
-            statures, or in metres.
 
     Raises:
         PlanError: A thing would be put down where nothing supports it.

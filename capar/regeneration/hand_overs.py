@@ -58,10 +58,6 @@ class JointSource:
 def joint_source(capture: Capture, observation: Observation) -> JointSource:
     """What a capture of several performers and its observation say of the performance.
 
-    Args:
-        capture: What was recorded.
-        observation: What was done in it.
-
     Raises:
         PlanError: As for one performer; or a thing passes between hands that never both hold it,
             or two things do at once.
@@ -185,12 +181,6 @@ def places() -> Iterator[Place]:
 def joint_ways(source: JointSource, cast: Cast, style: Style, place: Place) -> Ways:
     """The ways of all things, through the hands of all performers.
 
-    Args:
-        source: What was recorded.
-        cast: Who performs, and where.
-        style: Of the first performer, whose ways of things are everybody's.
-        place: Where things are handed over.
-
     Raises:
         PlanError: Something would be put down where nothing supports it, or meets the head of
             one who was given it.
@@ -231,12 +221,6 @@ def offer(source: JointSource, cast: Cast, passed: HandOver, place: Place) -> Ri
 
     Along the line from one performer to the other where the recorded place divides it, each side
     in proportion to that one's stature; as far above where it was at first as it was recorded.
-
-    Args:
-        source: What was recorded.
-        cast: Who performs, and where.
-        passed: What passes between whom.
-        place: How far from there.
     """
     pair = (passed.giver, passed.taker)
     olds, news = [source.sources[name] for name in pair], [cast.scenes[name] for name in pair]
@@ -355,12 +339,7 @@ class TwoBodies:
     def nearest(
         self, first: Float[np.ndarray, "posture"], second: Float[np.ndarray, "posture"]
     ) -> tuple[float, str, str]:
-        """How far two bodies are apart in some postures, negative inside [m], and which parts.
-
-        Args:
-            first: Posture of the first body.
-            second: Likewise.
-        """
+        """How far two bodies are apart in some postures, negative inside [m], and which parts."""
         self.data.qpos[:] = np.concatenate([first, second])
         mujoco.mj_kinematics(self.model, self.data)
         middles = self.data.geom_xpos[self.pairs]
@@ -374,12 +353,7 @@ class TwoBodies:
 
 
 def joint_gates(source: JointSource, motions: Mapping[str, Motion]) -> tuple[Gate, ...]:
-    """Gates between all bodies, at every frame.
-
-    Args:
-        source: What was recorded.
-        motions: By the agent's name.
-    """
+    """Gates between all bodies, at every frame."""
     return (*_between(motions), *_coupled(source, motions))
 
 
@@ -475,12 +449,6 @@ def regenerate_together(
 
     The things' ways are decided first and are the same for all; then every body is led along its
     own hands' ways.
-
-    Args:
-        source: The recorded performance.
-        humans: Who performs, by the name of the recorded agent.
-        scenes: The same things for all, and where each one stands; as recorded, unless stated.
-        kind: What of the recorded ways is kept.
 
     Raises:
         PlanError: It is out of reach or impossible; the message says what would help.

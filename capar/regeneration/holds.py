@@ -83,11 +83,6 @@ def holds_of(
 
     Rigidly where that is so; else, where the hand carries the thing, within what a living hand's
     grasp gives way.
-
-    Args:
-        hands: The hands.
-        paths: ``T_world_thing`` by name at every frame.
-        touching: The contacts that were observed.
     """
     out = []
     for side, (sensor, hand) in hands.items():
@@ -427,14 +422,7 @@ def poises_of(
     things: Mapping[str, Thing],
     holds: tuple[Hold, ...],
 ) -> tuple[Poise, ...]:
-    """When held things lean over others that can be moved, in order of time.
-
-    Args:
-        observation: What was observed.
-        sensors: The sensor of the hand on each side.
-        things: The things by name.
-        holds: When hands hold them.
-    """
+    """When held things lean over others that can be moved, in order of time."""
     leans = [fact for fact in observation.facts if isinstance(fact, Leans)]
     out = []
     for fact in observation.facts:
@@ -509,11 +497,6 @@ def rides_of(
 ) -> tuple[Ride, ...]:
     """What is borne by what hands move, in order of time; bearers before what they bear.
 
-    Args:
-        paths: ``T_world_thing`` by name at every frame.
-        holds: Of all hands.
-        touching: The contacts that were observed.
-
     Raises:
         PlanError: A thing is taken by a hand after it was borne.
     """
@@ -576,12 +559,7 @@ def _goes_along(thing: RigidTransform, bearer: RigidTransform, first: int, last:
 def with_riders(
     paths: Mapping[str, RigidTransform], rides: tuple[Ride, ...]
 ) -> dict[str, RigidTransform]:
-    """The ways of all things, what is borne going along with its bearer.
-
-    Args:
-        paths: ``T_world_thing`` by name at every frame; of what is borne up to its ride.
-        rides: Bearers before what they bear.
-    """
+    """The ways of all things, what is borne going along with its bearer."""
     out = dict(paths)
     for ride in rides:
         own, bearer = out[ride.thing], out[ride.bearer]
@@ -600,12 +578,6 @@ def steadiness(
 
     It weighs on it along the sum of gravity and of what its middle is accelerated; it slides where
     that leaves the cone of friction, and falls over where it leads past what it stands on.
-
-    Args:
-        thing: What is borne, of uniform density.
-        seat: ``T_bearer_thing``.
-        bearer: ``T_world_bearer`` at every frame of the ride.
-        rate_hz: Frames a second.
     """
     mesh = trimesh.Trimesh(np.array(thing.shape.vertices), np.array(thing.shape.faces))
     middle = seat.apply(np.array(mesh.convex_hull.center_mass))
@@ -667,10 +639,6 @@ def companions_of(
     The hand is led by the thing that it takes first; of several by the one that it holds longest,
     then by name.
 
-    Args:
-        holds: Of all hands.
-        paths: ``T_world_thing`` by name at every frame.
-
     Raises:
         PlanError: One of two things that a hand moves together is moved without the other, too.
     """
@@ -727,12 +695,7 @@ def led_holds(holds: tuple[Hold, ...], companions: tuple[Companion, ...]) -> tup
 def hand_spans(
     holds: list[Hold], companions: tuple[Companion, ...]
 ) -> Iterator[tuple[Hold, frozenset[str]]]:
-    """From when to when a hand has things, and which ones.
-
-    Args:
-        holds: Of one hand, in order of time.
-        companions: Of all hands.
-    """
+    """From when to when a hand has things, and which ones."""
     for lead in led_holds(tuple(holds), companions):
         own = [lead, *(companion.hold for companion in companions if companion.lead == lead)]
         first, last = min(hold.first for hold in own), max(hold.last for hold in own)

@@ -23,11 +23,7 @@ class Guide:
 
 
 def guide_of(draft: Draft) -> Guide:
-    """The key postures of a draft whose grips are chosen, and straight ways between them.
-
-    Args:
-        draft: With grips that reach.
-    """
+    """The key postures of a draft whose grips are chosen, and straight ways between them."""
     keys, rest = draft.key_postures()
     times, shown = draft.source.times, sorted(keys)
     at_s = [times[shown[0]] - FADE_S, *times[shown], times[shown[-1]] + FADE_S]
@@ -50,12 +46,7 @@ class Motion:
 
 
 def perform_plan(plan: Plan, guide: Guide | None = None) -> Motion:
-    """Follow a plan frame by frame.
-
-    Args:
-        plan: What is to be done.
-        guide: Postures to which the body is drawn meanwhile; standing at ease, unless stated.
-    """
+    """Follow a plan frame by frame."""
     scene = plan.scene
     clear = ClearTask(Surroundings(plan.human, scene), plan.source.met)
     solver = Solver(plan.human, (*scene.place, scene.floor_m), scene.heading, (clear,))

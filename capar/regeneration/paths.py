@@ -265,14 +265,7 @@ def _borne(
 def borne_steadily(
     source: Source, scene: Scene, paths: Mapping[str, RigidTransform], ride: Ride
 ) -> Steadiness:
-    """Whether a thing would stay on what bears it along these ways.
-
-    Args:
-        source: The recorded performance.
-        scene: Where it is performed.
-        paths: ``T_world_thing`` by name at every frame.
-        ride: Which thing, on what and when.
-    """
+    """Whether a thing would stay on what bears it along these ways."""
     bearer = paths[ride.bearer][ride.first : ride.last + 1]
     seat = bearer[0].inv() * paths[ride.thing][ride.first]
     return steadiness(scene.thing(ride.thing), seat, bearer, source.rate_hz)

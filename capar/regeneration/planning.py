@@ -202,11 +202,7 @@ class Draft:
         self.watched, self.style = watched, style
 
     def beyond(self, frames: frozenset[int] | None = None) -> Beyond | None:
-        """The first key frame at which a palm that may turn freely misses by more than grips gain.
-
-        Args:
-            frames: Frames at which it is tried; the key frames of every hold, unless stated.
-        """
+        """The first key frame at which a freely turning palm misses by more than grips gain."""
         for hold in self.source.holds:
             grips, solver = self._gripped([hold], Turn()), self._solver()
             solver.turning = FREELY
@@ -238,11 +234,6 @@ class Draft:
         """A grip for every hold with the least turn that reaches; what is missed if none does.
 
         Where an arm presses against what it holds whatever the grip, that is in ``pressed``.
-
-        Args:
-            most: Turns of a grip that are tried.
-            thorough: Whether a hand is also drawn back, and turned as the body would take the
-                thing; with all turns only, unless stated.
         """
         thorough = most == MOST_TURNS if thorough is None else thorough
         chosen: list[Grip] = []
@@ -563,13 +554,7 @@ class Search:
     performed: int = 0
 
     def finds(self, scene: Scene, human: Human, most: int = FEW_TURNS) -> bool:
-        """Whether a body does it from just there, as far as that is tried.
-
-        Args:
-            scene: Where.
-            human: Who performs.
-            most: Turns of a grip that are tried, of a toss no more than usual here.
-        """
+        """Whether a body does it from just there, as far as that is tried."""
         if not self.source.tosses:
             return is_possible(self.source, scene, human, most)
         if self.changes == MOST_CHANGES or self.gripped == MOST_GRIPPED:
@@ -641,12 +626,6 @@ class Plan:
 def plan(source: Source, scene: Scene, human: Human, *, care: Care | None = None) -> Plan:
     """Decide what a body is to do, before anything moves.
 
-    Args:
-        source: The recorded performance.
-        scene: Where it is performed.
-        human: Who performs.
-        care: How free hands keep from what they do not touch.
-
     Raises:
         PlanError: Something is out of reach or cannot be put down; the message says what would
             help.
@@ -663,15 +642,6 @@ def reachable(
     performs: Performs | None = None,
 ) -> Draft:
     """Goals, and grips that reach them, from where it stands or, unless it stays, from nearby.
-
-    Args:
-        source: The recorded performance.
-        scene: Where it is performed.
-        human: Who performs.
-        style: How it is done; as it was recorded, unless stated.
-        watched: Frames at which reach is tried besides the usual ones; without any grip that
-            reaches there, nothing else is sought that would help.
-        performs: Tries the motion of what would help a toss; left out, reach is enough.
 
     Raises:
         PlanError: As ``plan`` says.
@@ -707,14 +677,7 @@ def reachable(
 
 
 def why_unreachable(source: Source, scene: Scene, human: Human, style: Style) -> str | None:
-    """Why a body does not come to every goal from just there; None where it does.
-
-    Args:
-        source: The recorded performance.
-        scene: Where it is performed.
-        human: Who performs.
-        style: How it is done.
-    """
+    """Why a body does not come to every goal from just there; None where it does."""
     try:
         found = _draft(source, scene, human, style, frozenset())
     except PlanError as error:
@@ -723,12 +686,7 @@ def why_unreachable(source: Source, scene: Scene, human: Human, style: Style) ->
 
 
 def led(draft: Draft, care: Care) -> Plan:
-    """A plan with the ways of free hands, so careful.
-
-    Args:
-        draft: With grips that reach.
-        care: How free hands keep from what they do not touch.
-    """
+    """A plan with the ways of free hands, so careful."""
     source, scene = draft.source, draft.scene
     held = {grip.hold: grip.pose for grip in draft.grips}
     hands, detours = hand_paths(
@@ -827,14 +785,7 @@ def _drawn_nearer(scene: Scene, by_m: float) -> Scene:
 
 
 def is_possible(source: Source, scene: Scene, human: Human, most: int = FEW_TURNS) -> bool:
-    """Whether a body comes to every goal from just there, with few turns of its grips tried.
-
-    Args:
-        source: The recorded performance.
-        scene: Where it is performed.
-        human: Who performs.
-        most: Turns of a grip that are tried.
-    """
+    """Whether a body comes to every goal from just there, with few turns of its grips tried."""
     try:
         check_stance(scene, human)
         draft = Draft(source, scene, human, own_style(source))

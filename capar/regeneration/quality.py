@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.human import ROOT_SIZE
+from capar.body.human import ROOT_SIZE, Human
 from capar.body.recording import HAND_SEGMENTS
 from capar.model.par import Condition
 from capar.regeneration.collisions import NEAR_M, Pair, Surroundings, inner_gap
@@ -83,6 +83,12 @@ class Quality:
     def gate(self, name: str) -> Gate:
         """The gate of that name."""
         return next(gate for gate in self.gates if gate.name == name)
+
+
+def failures(quality: Quality) -> str:
+    """The gates that fail, in words."""
+    rows = (gate for gate in quality.gates if not gate.passed)
+    return ", ".join(f"{gate.name} {gate.value:.1f} {gate.unit} ({gate.bodies})" for gate in rows)
 
 
 def quality(motion: Motion) -> Quality:
@@ -312,21 +318,28 @@ def _body_gates(motion: Motion) -> Iterator[Gate]:
     yield Gate(
         "feet", 1e3 * float(slid[foot].max()), 3.0, "mm", False, int(slid[foot].argmax()), foot
     )
-    low, high = plan.human.ranges.T
+    yield from joint_gates(plan.human, postures, plan.source.rate_hz)
+
+
+def joint_gates(
+    human: Human, postures: Float[np.ndarray, "frames posture"], rate_hz: float
+) -> Iterator[Gate]:
+    """Limits and speeds of hinges, and the speed of the pelvis."""
+    low, high = human.ranges.T
     angles = postures[:, ROOT_SIZE:]
     out = np.maximum(np.maximum(low - angles, angles - high), 0.0)
     frame, hinge = np.unravel_index(int(out.argmax()), out.shape)
     yield Gate(
         "joint limits", float(np.degrees(out.max())), 0.01, "deg", False,
-        int(frame), plan.human.joints[int(hinge)],
+        int(frame), human.joints[int(hinge)],
     )  # fmt: skip
-    speeds = np.abs(np.diff(angles, axis=0)) * plan.source.rate_hz
+    speeds = np.abs(np.diff(angles, axis=0)) * rate_hz
     frame, hinge = np.unravel_index(int(speeds.argmax()), speeds.shape)
     yield Gate(
         "joint speed", float(speeds.max()), 15.0, "rad/s", False,
-        int(frame), plan.human.joints[int(hinge)],
+        int(frame), human.joints[int(hinge)],
     )  # fmt: skip
-    hips = np.linalg.norm(np.diff(postures[:, :3], axis=0), axis=1) * plan.source.rate_hz
+    hips = np.linalg.norm(np.diff(postures[:, :3], axis=0), axis=1) * rate_hz
     yield Gate("pelvis speed", float(hips.max()), 1.5, "m/s", False, int(hips.argmax()))
 
 
@@ -502,10 +515,6 @@ class Measuring:
 
         An event lies between two frames, so that both may be so.
 
-        Args:
-            contact: The two.
-            frame: Of the event.
-
         Returns:
             Both, and how far they are apart at the event; at most ``NEAR_M`` [m].
         """
@@ -527,13 +536,7 @@ class Measuring:
 def distances(
     around: Surroundings, posture: Float[np.ndarray, "posture"], poses: Mapping[str, RigidTransform]
 ) -> dict[Contact, float]:
-    """How far hands, the head and things near each other are apart, in both orders [m].
-
-    Args:
-        around: The body and the things.
-        posture: Of the body.
-        poses: Of the things.
-    """
+    """How far hands, the head and things near each other are apart, in both orders [m]."""
     around.pose(posture, poses)
     found: dict[Contact, float] = {}
     for pair in [*around.near(), *around.things_near()]:
@@ -549,10 +552,6 @@ def disagreements(motion: Motion, steps: Iterable[Asserted]) -> Iterator[Disagre
 
     The table begins with what is measured at the first frame. A step that moves a thing leaves
     open which other things that one touches, unless it asserts it.
-
-    Args:
-        motion: What was performed.
-        steps: What is asserted; steps that end at one frame do so at once.
     """
     measuring = Measuring(motion)
     table = measuring.at_first()
@@ -584,12 +583,7 @@ def contact_gate(motion: Motion, steps: Iterable[Asserted]) -> Gate:
 def contacts_of(
     conditions: Iterable[Condition], names: Mapping[str, str]
 ) -> tuple[tuple[Contact, bool], ...]:
-    """The contacts among conditions, bodies by the names that they have here.
-
-    Args:
-        conditions: Of a PAR.
-        names: Of bodies here by those in the conditions; what is not in it is left out.
-    """
+    """The contacts among conditions, bodies by the names that they have here."""
     found = []
     for condition in conditions:
         if condition.kind == "contact" and set(condition.arguments) <= set(names):

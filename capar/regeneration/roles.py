@@ -87,12 +87,7 @@ def _role(source: Source, name: str, taking: Sequence[str]) -> Role:
 
 
 def ends_on(source: Source, name: str) -> tuple[str, str]:
-    """What a recorded thing stands on at first and in the end; empty where it is nothing.
-
-    Args:
-        source: What was recorded.
-        name: Of the thing.
-    """
+    """What a recorded thing stands on at first and in the end; empty where it is nothing."""
     x, y, z = (float(value) for value in source.paths[name].translation[-1])
     after = moved(source.scene, name, (x, y, z), source.scene.thing(name).heading)
     return source.scene.support(name), after.support(name)
@@ -112,14 +107,6 @@ def bind(
     What is stated counts first; then a part that bears another one is taken by what that one's
     thing stands on; then the only thing that can be moved, or is fixed, as the recorded one and is
     nearest of kind. Where several are equally near, it is asked.
-
-    Args:
-        roles: The parts.
-        scene: The things that there are.
-        stated: The thing's name for some parts.
-        kinds: The hierarchy of kinds.
-        ask: Asks a user; None where there is nobody to ask.
-        own: Whether it is the recorded scene, where a thing has its own part unless stated.
 
     Raises:
         UnknownNameError: A stated part or thing does not exist.
@@ -238,13 +225,6 @@ def cast(
     In both the things bear their recorded names; a thing without a part keeps its own and stands
     in the way.
 
-    Args:
-        source: What was recorded.
-        scene: Where it is performed.
-        parts: The thing of the scene for each recorded one.
-        goals: The thing of the scene that each one, by its recorded name, is put on in the end,
-            where that is another one than its part says.
-
     Raises:
         PlanError: A recorded thing has no part, or a fixed one is to be moved.
     """
@@ -287,12 +267,7 @@ def _shifted(
 
 
 def with_only(source: Source, names: Container[str]) -> Source:
-    """A recorded performance without the things that take no part in it.
-
-    Args:
-        source: What was recorded.
-        names: Of the things that take part.
-    """
+    """A recorded performance without the things that take no part in it."""
     scene = source.scene
     things = {name: thing for name, thing in scene.things.items() if name in names}
     paths = {name: path for name, path in source.paths.items() if name in names}

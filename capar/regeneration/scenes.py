@@ -234,10 +234,6 @@ def read_scene(path: Path, scene: Scene) -> Scene:
 def read_scenes(path: Path, scenes: Mapping[str, Scene]) -> dict[str, Scene]:
     """Likewise of several performers: ``[stance]`` is the first one's, ``[stance.NAME]`` of NAME.
 
-    Args:
-        path: Of the file.
-        scenes: As recorded, by the agent's name, the first one first.
-
     Raises:
         FileError: The file cannot be read, or says something else.
         UnknownNameError: It names an object that is not there.
@@ -284,11 +280,6 @@ def _standing(path: Path, scene: Scene, stance: dict[str, Any], where: str) -> S
 
 def drawn_scene(scene: Scene, rng: np.random.Generator, draw: Draw = USUAL) -> Scene:
     """A scene with other sizes and places, its first fixed thing as high as a table may be.
-
-    Args:
-        scene: As it was recorded.
-        rng: What draws.
-        draw: The ranges from which it draws.
 
     What bears a door or a drawer is drawn with it, in size and place, and as much higher or lower;
     things that a hand takes together are drawn as one.

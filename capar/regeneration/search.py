@@ -36,12 +36,6 @@ def regenerate(
 ) -> tuple[Motion, Quality]:
     """Let a body do in a scene what was recorded; verified at every frame.
 
-    Args:
-        source: The recorded performance.
-        human: Who performs.
-        scene: Where; as it was recorded, unless stated.
-        style: How; as it was recorded, unless stated.
-
     Raises:
         PlanError: It is out of reach or impossible; the message says what would help.
     """
@@ -51,13 +45,7 @@ def regenerate(
 
 
 def best_motion(draft: Draft, again: Callable[[frozenset[int]], Draft]) -> tuple[Motion, Quality]:
-    """The motion of a draft that fails fewest gates.
-
-    Args:
-        draft: With grips that reach.
-        again: Seeks grips that reach at some frames besides the usual ones; raises PlanError where
-            there are none.
-    """
+    """The motion of a draft that fails fewest gates."""
     best = _careful(draft)
     if not best[1].passed and draft.grips:
         best = min(best, _careful(draft, guide_of(draft)), key=_failures)

@@ -170,12 +170,7 @@ class Solver:
         return np.array(self.configuration.q)
 
     def draw_to(self, posture: Float[np.ndarray, "posture"], weight: float) -> None:
-        """From now on be drawn to a posture's joint angles, more or less strongly.
-
-        Args:
-            posture: What guides; where the pelvis is in it does not matter.
-            weight: 1 as strongly as a guide does, 0 as to standing at ease.
-        """
+        """From now on be drawn to a posture's joint angles, more or less strongly."""
         guide = self.rest.copy()
         guide[ROOT_SIZE:] = posture[ROOT_SIZE:]
         self.ease.set_target(guide)

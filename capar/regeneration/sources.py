@@ -54,13 +54,7 @@ PATCH_M = 0.0015
 def contact_points(
     first: Shape, second: Shape, relative: RigidTransform
 ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
-    """The middle of the contact on each of two shapes, in each one's own frame [m].
-
-    Args:
-        first: The one.
-        second: The other.
-        relative: ``T_first_second``.
-    """
+    """The middle of the contact on each of two shapes, in each one's own frame [m]."""
     one, two = _points(first), _points(second)
     gaps, nearest = KDTree(one).query(relative.apply(two))
     patch = gaps < gaps.min() + PATCH_M
@@ -112,10 +106,6 @@ class HandAxes:
 def stated_hand_frame(shape: Shape, axes: HandAxes) -> HandFrame:
     """The frame along axes that are known, whatever the shape of the half-bent hand is.
 
-    Args:
-        shape: The hand's surface.
-        axes: Its directions; the palm's is kept where they are not at right angles.
-
     Raises:
         PlanError: The two are along one line.
     """
@@ -133,13 +123,7 @@ def stated_hand_frame(shape: Shape, axes: HandAxes) -> HandFrame:
 def hand_frame(
     shape: Shape, fingers: Float[np.ndarray, "3"], palm: Float[np.ndarray, "3"]
 ) -> HandFrame:
-    """The frame along the principal axes of a hand's hull.
-
-    Args:
-        shape: The hand's surface.
-        fingers: Roughly to where the fingers point, in the shape's frame.
-        palm: Roughly to where the palm faces, likewise.
-    """
+    """The frame along the principal axes of a hand's hull."""
     hull = trimesh.convex.convex_hull(np.array(shape.vertices))
     axes = np.array(hull.principal_inertia_vectors)
     moments = np.array(hull.principal_inertia_components)

@@ -1,8 +1,9 @@
 """Steps of the whole body to where an action can be done, and their gates."""
 
-import itertools
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import mink
 import mujoco
@@ -10,15 +11,18 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.human import ROOT_SIZE, Human
+from capar.body.human import Human
 from capar.body.inverse_kinematics import Solver as Steps
 from capar.body.inverse_kinematics import support
 from capar.body.scripts import SIDES, minimum_jerk
 from capar.regeneration.collisions import NEAR_M, Pair, Surroundings
-from capar.regeneration.quality import Gate, Quality, is_hand
-from capar.regeneration.scenes import Scene
+from capar.regeneration.planning import beside, check_stance, is_possible, why_unreachable
+from capar.regeneration.quality import Gate, Quality, failures, is_hand, joint_gates
+from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.solving import DAMPING_COST, FrameLimit, vectors
 from capar.regeneration.solving import Solver as Standing
+from capar.regeneration.sources import Source
+from capar.regeneration.styles import Style
 
 STRIDE = 0.16
 """How far a foot goes in a step at most [share of stature] (estimate: half a usual step)."""
@@ -83,39 +87,25 @@ class Stepping:
 
 
 def strides_to(human: Human, scene: Scene, goal: Place) -> tuple[Stride, ...]:
-    """The fewest steps of at most ``STRIDE`` straight there; each foot comes beside the other.
+    """The fewest steps of at most ``STRIDE`` straight there [m]; each foot comes beside the other.
 
     The foot on the side to which it goes steps first, else the right one.
-
-    Args:
-        human: Who.
-        scene: Where it stands at first.
-        goal: Where it is to stand [m].
     """
     x, y = np.asarray(goal) - scene.place
-    far = float(np.hypot(x, y))
-    count = max(int(np.ceil(far / (STRIDE * human.measures["stature"]) - 1e-9)), 1)
+    count = _count(human, float(np.hypot(x, y)))
     left = -np.sin(scene.heading) * x + np.cos(scene.heading) * y
     order = ("left", "right") if left > 1e-6 else ("right", "left")
     return tuple(Stride(side, (x / count, y / count)) for _ in range(count) for side in order)
 
 
-def step_to(human: Human, scene: Scene, *places: Place, rate_hz: float = 30.0) -> Stepping:
-    """Step to other places, facing the same way.
+def _count(human: Human, far_m: float) -> int:
+    """How many steps of each foot lead so far."""
+    return max(int(np.ceil(far_m / (STRIDE * human.measures["stature"]) - 1e-9)), 1)
 
-    Args:
-        human: Who.
-        scene: Where it stands at first.
-        places: Where it is to stand, one after the other [m]; one at least.
-        rate_hz: Frames a second.
-    """
-    stations = [scene.place, *places]
-    strides = tuple(
-        stride
-        for before, after in itertools.pairwise(stations)
-        for stride in strides_to(human, replace(scene, place=before), after)
-    )
-    goal = stations[-1]
+
+def step_to(human: Human, scene: Scene, goal: Place, *, rate_hz: float = 30.0) -> Stepping:
+    """Step straight to another place [m], facing the same way."""
+    strides = strides_to(human, scene, goal)
     body = _Stepper(human, scene, 1.0 / rate_hz)
     for _ in range(round(STAND_S * rate_hz)):
         body.frame()
@@ -217,7 +207,13 @@ INSIDE_MM = 10.0
 def stepping_quality(made: Stepping) -> Quality:
     """Verify steps at every frame."""
     feet = _feet(made)
-    return Quality((*_foot_gates(made, feet), *_contact_gates(made), *_joint_gates(made)))
+    return Quality(
+        (
+            *_foot_gates(made, feet),
+            *_contact_gates(made),
+            *joint_gates(made.human, made.postures, 1.0 / float(made.times[1] - made.times[0])),
+        )
+    )
 
 
 def _feet(made: Stepping) -> dict[str, RigidTransform]:
@@ -290,21 +286,148 @@ def _contact_gates(made: Stepping) -> Iterator[Gate]:
         yield Gate(name, 1e3 * pair.distance_m, limit, "mm", True, frame, bodies)
 
 
-def _joint_gates(made: Stepping) -> Iterator[Gate]:
-    rate_hz = 1.0 / float(made.times[1] - made.times[0])
-    low, high = made.human.ranges.T
-    angles = made.postures[:, ROOT_SIZE:]
-    out = np.maximum(np.maximum(low - angles, angles - high), 0.0)
-    frame, hinge = np.unravel_index(int(out.argmax()), out.shape)
-    yield Gate(
-        "joint limits", float(np.degrees(out.max())), 0.01, "deg", False,
-        int(frame), made.human.joints[int(hinge)],
-    )  # fmt: skip
-    speeds = np.abs(np.diff(angles, axis=0)) * rate_hz
-    frame, hinge = np.unravel_index(int(speeds.argmax()), speeds.shape)
-    yield Gate(
-        "joint speed", float(speeds.max()), 15.0, "rad/s", False,
-        int(frame), made.human.joints[int(hinge)],
-    )  # fmt: skip
-    hips = np.linalg.norm(np.diff(made.postures[:, :3], axis=0), axis=1) * rate_hz
-    yield Gate("pelvis speed", float(hips.max()), 1.5, "m/s", False, int(hips.argmax()))
+GRID_M = 0.1
+AHEAD, ASIDE = range(-3, 11), range(-5, 6)
+"""The places that are considered, from the given one ahead and to the left [grid steps]."""
+
+FARTHEST_M = GRID_M * AHEAD[-1]
+"""How far ahead it is stepped at most [m]."""
+
+REACH, HIGHEST = 0.62, 1.3
+"""No posture reaches the middle of an object farther away on the floor, or higher above it
+[share of stature] (estimate)."""
+
+MOST_TRIES = 6
+"""So many places are tried of those that are as many steps away [1]."""
+
+MOST_NAMED = 3
+"""So many of them are named where none helps [1]."""
+
+Made = TypeVar("Made")
+
+
+@dataclass(frozen=True, eq=False)
+class Approach:
+    """Steps that prepare an action."""
+
+    why: str
+    """Why they are needed."""
+
+    steps: Stepping
+    quality: Quality
+    ahead_m: float
+    aside_m: float
+    """How far ahead and to the left they lead."""
+
+    tried: tuple[str, ...]
+    """Other places, and why the action is not possible there."""
+
+
+def approached(
+    source: Source,
+    human: Human,
+    scene: Scene,
+    style: Style,
+    act: Callable[[Scene], tuple[Made, Quality]],
+) -> tuple[Approach | None, Made, Quality]:
+    """Perform an action where it can be done, after as few steps there as possible.
+
+    ``act`` performs it in a scene, and raises PlanError where that is not possible. The steps are
+    None where none is needed.
+
+    Raises:
+        PlanError: The performer stands in something, or it is out of reach and no step helps.
+    """
+    check_stance(scene, human)
+    why = _beyond(source, human, scene) or why_unreachable(source, scene, human, style)
+    if why is None:
+        return None, *act(replace(scene, stays=True))
+    tried: list[str] = []
+    for ahead_m, aside_m in _places(source, human, scene):
+        found = _tried(source, human, scene, beside(scene, ahead_m, aside_m), act)
+        if not isinstance(found, str):
+            made, quality, walked, gates = found
+            approach = Approach(why, walked, gates, ahead_m, aside_m, tuple(tried))
+            return approach, made, quality
+        tried.append(f"{ahead_m:+.1f} m ahead and {aside_m:+.1f} m to the left: {found}")
+    if not tried:
+        raise PlanError(f"{why}; no step helps, since nothing nearer is free or it is too high")
+    some = "; ".join(tried[:MOST_NAMED]) + ("; and so on" if len(tried) > MOST_NAMED else "")
+    raise PlanError(f"{why}; no step helps of {len(tried)} places that were tried ({some})")
+
+
+def _tried(
+    source: Source,
+    human: Human,
+    scene: Scene,
+    there: Scene,
+    act: Callable[[Scene], tuple[Made, Quality]],
+) -> tuple[Made, Quality, Stepping, Quality] | str:
+    """Steps to a place and the action there, or why that is not possible."""
+    if not is_possible(source, replace(there, stays=True), human):
+        return "out of reach"
+    walked = step_to(human, scene, there.place, rate_hz=source.rate_hz)
+    gates = stepping_quality(walked)
+    if not gates.passed:
+        return f"the steps there fail {failures(gates)}"
+    try:
+        made, quality = act(walked.after)
+    except PlanError as error:
+        return str(error)
+    return (made, quality, walked, gates) if quality.passed else f"it fails {failures(quality)}"
+
+
+def _places(source: Source, human: Human, scene: Scene) -> Iterator[tuple[float, float]]:
+    """Places ahead and to the left [m], those of the fewest steps first, ``MOST_TRIES`` of each.
+
+    Of equally few, those by which the performer stands by the objects as the recorded one did.
+    Somebody at ease stands in nothing there, and nothing that is taken is beyond every posture.
+    """
+    around = Surroundings(human, scene)
+    posture = Standing(human, (*scene.place, scene.floor_m), scene.heading).rest
+    poses = {name: thing.pose for name, thing in scene.things.items()}
+    wish, tries = _wish(source, human, scene), Counter[int]()
+    rows = []
+    for spot in ((GRID_M * ahead, GRID_M * aside) for ahead in AHEAD for aside in ASIDE):
+        place = beside(scene, *spot).place
+        steps, off = _count(human, float(np.hypot(*spot))), np.subtract(place, wish)
+        rows.append((steps, round(1e3 * float(np.linalg.norm(off))), spot))
+    for steps, _, spot in sorted(rows):
+        there = beside(scene, *spot)
+        if spot == (0.0, 0.0) or tries[steps] == MOST_TRIES or _beyond(source, human, there):
+            continue
+        standing = posture.copy()
+        standing[:2] += np.subtract(there.place, scene.place)
+        around.pose(standing, poses)
+        if all(pair.distance_m >= 0.0 for pair in around.near()):
+            tries[steps] += 1
+            yield spot
+
+
+def _beyond(source: Source, human: Human, scene: Scene) -> str:
+    """What is handled farther away or higher than any posture reaches, in words; empty if none."""
+    tall = human.measures["stature"]
+    for name in dict.fromkeys(hold.thing for hold in source.holds):
+        place = np.asarray(scene.thing(name).place)
+        far_m = float(np.linalg.norm(place[:2] - scene.place))
+        high_m = float(place[2]) - scene.floor_m
+        more_m = far_m - REACH * tall
+        if more_m > 0.0:
+            return (
+                f"{name!r} is {far_m:.1f} m away, {more_m:.1f} m farther than any posture reaches"
+            )
+        if high_m > HIGHEST * tall:
+            return f"{name!r} is {high_m:.1f} m above the floor, higher than any posture reaches"
+    return ""
+
+
+def _wish(source: Source, human: Human, scene: Scene) -> Float[np.ndarray, "2"]:
+    """Where the performer would stand by the objects as the recorded one did, by stature [m]."""
+    names = [hold.thing for hold in source.holds]
+    old, new = (
+        np.mean([one.thing(name).place for name in names], axis=0)[:2]
+        for one in (source.scene, scene)
+    )
+    turn = scene.heading - source.scene.heading
+    away = (old - source.scene.place) * human.measures["stature"] / source.human.measures["stature"]
+    return np.asarray(new - Rotation.from_euler("z", turn).apply([*away, 0.0])[:2])

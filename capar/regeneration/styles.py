@@ -72,11 +72,6 @@ def own_style(source: Source, kind: Kind = Kind.PATH) -> Style:
 def borrowed_style(source: Source, other: Source, kind: Kind = Kind.PATH) -> Style:
     """The style of another recording of the same: its ways and timing between the same events.
 
-    Args:
-        source: What is done.
-        other: How it is done.
-        kind: What of it is kept.
-
     Raises:
         PlanError: Other hands do something, or in another order.
     """

@@ -10,12 +10,10 @@ from typer.testing import CliRunner
 
 from capar.body.scripted_actions import action_capture
 from capar.cli import app
-from capar.pipelines import preparation
 from capar.pipelines.observation import observe
-from capar.pipelines.preparation import approached
 from capar.pipelines.round_trips import body, observed_source
 from capar.pipelines.trials import trial_of
-from capar.regeneration import PlanError, Source, regenerate
+from capar.regeneration import PlanError, Source, regenerate, stepping
 from capar.regeneration.captures import capture_of_steps
 from capar.regeneration.planning import beside
 from capar.regeneration.quality import Quality
@@ -24,6 +22,7 @@ from capar.regeneration.stepping import (
     RISE_M,
     STRIDE,
     Stepping,
+    approached,
     step_to,
     stepping_quality,
     strides_to,
@@ -129,14 +128,14 @@ def test_places_that_need_fewer_steps_are_tried_first_and_told(
         tried.append(scene.place)
         return False
 
-    monkeypatch.setattr(preparation, "why_unreachable", lambda *_: "too far")
-    monkeypatch.setattr(preparation, "is_possible", reaches)
+    monkeypatch.setattr(stepping, "why_unreachable", lambda *_: "too far")
+    monkeypatch.setattr(stepping, "is_possible", reaches)
     start = _away(-0.5, 0.0)
     with pytest.raises(PlanError, match=r"of \d+ places that were tried \([+-]0.2 m ahead"):
         approached(source, man, start, own_style(source), lambda scene: _act("man", scene))
     far = [float(np.hypot(*np.subtract(place, start.place))) for place in tried]
-    assert max(far[: preparation.MOST_TRIES]) <= STRIDE * man.measures["stature"]
-    assert len(set(tried)) == len(tried) > preparation.MOST_TRIES
+    assert max(far[: stepping.MOST_TRIES]) <= STRIDE * man.measures["stature"]
+    assert len(set(tried)) == len(tried) > stepping.MOST_TRIES
 
 
 def test_a_child_that_stands_too_far_away_steps_and_touches(tmp_path: Path) -> None:
