@@ -18,7 +18,7 @@ from capar.regeneration.goals import Goal, support_at, thing_goals
 from capar.regeneration.holds import rides_of
 from capar.regeneration.motion import Motion
 from capar.regeneration.paths import Ways, thing_paths
-from capar.regeneration.planning import FEW_TURNS, MOST_TURNS, TALLER_M, Draft, beside, check_stance
+from capar.regeneration.planning import MOST_TURNS, TALLER_M, Draft, beside, check_stance
 from capar.regeneration.quality import Gate, Quality, performed_hands
 from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.search import best_motion
@@ -131,9 +131,7 @@ def all_holds(source: JointSource) -> tuple[Hold, ...]:
     return tuple(sorted(holds, key=lambda hold: (hold.first, hold.side)))
 
 
-SHIFTS = (
-    (0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0.0, -0.1), (0.1, 0.1), (-0.1, 0.1),
-)  # fmt: skip
+SHIFTS = ((0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0.0, -0.1))
 """Other places that are tried, from the usual one towards the taker and upwards [m]."""
 
 
@@ -390,26 +388,8 @@ def _missed(motion: Motion, passed: HandOver, name: str) -> tuple[float, int, st
     return worst
 
 
-NEARER_M = (0.1, 0.2, 0.3, 0.5, 0.8, 1.2)
+NEARER_M = (0.1, 0.3, 0.5, 0.8, 1.2)
 """How much nearer somebody is placed where something is out of reach [m]."""
-
-FAR_RATIO = 50.0
-"""What is missed by more with the recorded grip is not reached with a turned one, in units of what
-is allowed [1]."""
-
-MANY_TURNS = 24
-"""Turns of a grip that are tried at the usual place [1]."""
-
-MOST_PLACES = 3
-"""At so many places turned grips are tried [1]."""
-
-
-class OutOfReachError(PlanError):
-    """No grip of somebody reaches."""
-
-    def __init__(self, message: str, ratio: float) -> None:
-        super().__init__(message)
-        self.ratio = ratio
 
 
 @dataclass(frozen=True, eq=False)
@@ -466,34 +446,23 @@ def regenerate_together(
 
 
 def _reachable(source: JointSource, cast: Cast, kind: Kind) -> tuple[Place, dict[str, Draft]]:
-    """Where things are handed over, and everybody's grips; the first place that all reach.
+    """Where things are handed over, and everybody's grips.
+
+    The first place that all reach with the recorded grips, else the usual one with turned grips.
 
     Raises:
         PlanError: There is none.
     """
     for name, human in cast.humans.items():
         check_stance(cast.scenes[name], human)
-    tried = list(places()) if source.hand_overs else [Place()]
-    passing = frozenset(passed.first for passed in source.hand_overs)
-    near, why = [], ""
-    for place in tried:
-        try:
-            if passing:
-                _drafts(source, cast, kind, place, 1, only=passing)
-            return place, _drafts(source, cast, kind, place, 1)
-        except OutOfReachError as error:
-            near += [place] * (error.ratio < FAR_RATIO)
-            why = why or str(error)
-        except PlanError as error:
-            why = why or str(error)
-    for place, most in [(p, FEW_TURNS) for p in near[:MOST_PLACES]] + [
-        (p, MANY_TURNS) for p in near[:1]
-    ]:
+    usual, *others = places() if source.hand_overs else [Place()]
+    why = ""
+    for place, most in [*((place, 1) for place in (usual, *others)), (usual, MOST_TURNS)]:
         try:
             return place, _drafts(source, cast, kind, place, most)
         except PlanError as error:
-            why = str(error)
-    raise PlanError(f"{why}; {_remedy(source, cast, kind, passing)}")
+            why = why or str(error)
+    raise PlanError(f"{why}; {_remedy(source, cast, kind)}")
 
 
 def _drafts(
@@ -504,9 +473,8 @@ def _drafts(
     most: int,
     names: list[str] | None = None,
     watched: frozenset[int] = frozenset(),
-    only: frozenset[int] = frozenset(),
 ) -> dict[str, Draft]:
-    """Everybody's grips; tried at some frames only, if these are stated.
+    """Everybody's grips, with so many turns tried.
 
     Raises:
         PlanError: Somebody has none that reaches.
@@ -516,26 +484,24 @@ def _drafts(
     out = {}
     for name in names or list(source.sources):
         one, scene = source.sources[name], cast.scenes[name]
-        style = own_style(one, kind)
-        draft = Draft(one, scene, cast.humans[name], style, watched, ways)
-        draft.only = only
+        draft = Draft(one, scene, cast.humans[name], own_style(one, kind), watched, ways)
+        if beyond := draft.beyond():
+            raise PlanError(f"{name}: {beyond}")
         grips, missed = draft.reachable_grips(most)
         if missed is not None:
-            raise OutOfReachError(f"{name}: {missed}", draft.worst.ratio)
+            raise PlanError(f"{name}: {missed}")
         draft.grips = tuple(grips)
         draft.told += [f"whatever the grip, {told}" for told in draft.pressed]
         out[name] = draft
     return out
 
 
-def _remedy(source: JointSource, cast: Cast, kind: Kind, passing: frozenset[int]) -> str:
+def _remedy(source: JointSource, cast: Cast, kind: Kind) -> str:
     """What would make it possible."""
     for words, changed in _remedies(source, cast):
         try:
             for name, human in changed.humans.items():
                 check_stance(changed.scenes[name], human)
-            if passing:
-                _drafts(source, changed, kind, Place(), 1, only=passing)
             _drafts(source, changed, kind, Place(), 1)
         except PlanError:
             continue

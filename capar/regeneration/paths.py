@@ -115,8 +115,7 @@ class Carrying:
         detour: Detour,
         others: Mapping[str, RigidTransform],
     ) -> RigidTransform:
-        facing = self.scene.heading
-        path = mapped(part, *ends, turn=turn, detour=detour, heading=facing, kind=self.kind)
+        path = mapped(part, *ends, turn=turn, detour=detour, kind=self.kind)
         return self._out_of_ground(name, path, others)
 
     def _out_of_ground(
@@ -276,8 +275,7 @@ def _lifted(name: str, at_s: float, detour: Detour) -> str:
     return f"{name!r} is lifted {over} at {at_s:.2f} s"
 
 
-LIFTS_M_HAND_PATHS = (0.0, 0.04, 0.08, 0.12, 0.18, 0.25, 0.35)
-BACKS_M = (0.0, 0.05, 0.1, 0.15, 0.2, 0.3)
+HAND_LIFTS_M = (0.0, 0.04, 0.08, 0.12, 0.18, 0.25, 0.35)
 OFFS_M = (0.0, 0.003, 0.02, 0.05)
 """Detours that are tried [m]."""
 
@@ -294,7 +292,7 @@ CHECK_S = 0.02
 LEAVING_S = 0.3
 """So long after it let something go a hand may be near it [s]."""
 
-CUT_M_HAND_PATHS = 0.0003
+HAND_CUT_M = 0.0003
 """How far a hand may cut what it is about to hold or has just left [m]."""
 
 
@@ -369,7 +367,6 @@ def hand_paths(
                     *ends,
                     turn=turn,
                     detour=detour,
-                    heading=scene.heading,
                     away=away,
                     kind=style.kind,
                 )
@@ -411,7 +408,7 @@ def _away(hand: RigidTransform, hold: Hold | None) -> Float[np.ndarray, "3"]:
 
 
 DETOURS = sorted(
-    (Detour(lift, back, off) for lift in LIFTS_M_HAND_PATHS for back in BACKS_M for off in OFFS_M),
+    (Detour(lift, off) for lift in HAND_LIFTS_M for off in OFFS_M),
     key=lambda each: each.size,
 )
 
@@ -499,7 +496,7 @@ class _Clearance:
                 least = (
                     wanted[near][name]
                     if name not in touched
-                    else -CUT_M_HAND_PATHS
+                    else -HAND_CUT_M
                     if near
                     else self.care.off_m
                 )

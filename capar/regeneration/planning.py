@@ -1,7 +1,7 @@
 """Planning: grips that reach the goals, remedies where none does, and the planned paths."""
 
 import itertools
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,7 +25,6 @@ from capar.regeneration.scenes import (
     mobile,
     moved,
     raised,
-    resized,
     resized_with,
     taken_with,
 )
@@ -131,11 +130,11 @@ KEYS = 6
 """Key postures in a hold, besides those at goals."""
 
 KEY_ITERATIONS = 40
-MOST_TURNS = 120
+MOST_TURNS = 24
 """Turns of a grip that are tried."""
 
-GAINED_M = 0.06
-"""Nearer to the body no turn of a grip brings the palm (of a mug's 112 turns at most 42 mm) [m]."""
+GAINED_M = 0.09
+"""Nearer to the body no turn of a grip brings the palm [m] (estimate: 42 mm on a mug)."""
 
 FREELY = 0.003
 """Share of its weight that a palm's turning has where it is sought how the body would turn it."""
@@ -148,14 +147,6 @@ ROUNDS = 4
 
 SETTLE_S = 0.45
 """How long the head takes to be firmly where it is to be [s]."""
-
-
-@dataclass(frozen=True)
-class Beyond:
-    """Where a palm does not come, however it is turned."""
-
-    frame: int
-    sentence: str
 
 
 @dataclass(frozen=True)
@@ -197,57 +188,52 @@ class Draft:
         self.clear = ClearTask(self.gripping.around, source.met)
         self.grips: tuple[Grip, ...] = ()
         self.pressed: list[str] = []
-        self.worst = Miss()
-        self.only: frozenset[int] = frozenset()
         self.watched, self.style = watched, style
 
-    def beyond(self, frames: frozenset[int] | None = None) -> Beyond | None:
-        """The first key frame at which a freely turning palm misses by more than grips gain."""
+    def beyond(self) -> str:
+        """What a freely turning palm misses by more than any grip gains; empty if nothing."""
         for hold in self.source.holds:
             grips, solver = self._gripped([hold], Turn()), self._solver()
             solver.turning = FREELY
-            held = {f for f in frames or () if hold.first <= f <= hold.last}
-            for frame in self.key_frames([hold]) if frames is None else sorted(held):
+            for frame in self.key_frames([hold]):
                 goal = self.targets(grips, frame)
                 solver.follow(goal, most=KEY_ITERATIONS)
                 missed_m = solver.missed(goal)[0]
                 if missed_m > GAINED_M:
-                    return Beyond(
-                        frame,
-                        f"the {hold.side} hand cannot {self._does(hold, frame)} {hold.thing!r} at "
+                    return (
+                        f"the {hold.side} hand cannot {self._verb(hold, frame)} {hold.thing!r} at "
                         f"{self.source.times[frame]:.2f} s: however it is turned, it misses by "
-                        f"{1e3 * missed_m:.0f} mm",
+                        f"{1e3 * missed_m:.0f} mm"
                     )
-        return None
+        return ""
 
-    def _does(self, hold: Hold, frame: int) -> str:
-        """What a hand does at a frame with what it holds, as a verb."""
+    def _verb(self, hold: Hold, frame: int) -> str:
+        """What a hand does at a frame with what it holds."""
         tosses = [toss for toss in self.source.tosses if toss.thing == hold.thing]
-        if any(frame == toss.first and hold.side == toss.side for toss in tosses):
+        if any((frame, hold.side) == (toss.first, toss.side) for toss in tosses):
             return "throw"
-        caught = any(frame == toss.last and hold.side == toss.catcher for toss in tosses)
+        caught = any((frame, hold.side) == (toss.last, toss.catcher) for toss in tosses)
         return "catch" if caught else "follow"
 
-    def reachable_grips(
-        self, most: int = MOST_TURNS, *, thorough: bool | None = None
-    ) -> tuple[list[Grip], str | None]:
-        """A grip for every hold with the least turn that reaches; what is missed if none does.
+    def reachable_grips(self, most: int = MOST_TURNS) -> tuple[list[Grip], str | None]:
+        """A grip for every hold, and what is missed if one has none that reaches.
 
-        Where an arm presses against what it holds whatever the grip, that is in ``pressed``.
+        The first of these that reaches: ``most`` turns of the recorded grip, the smallest first;
+        drawn back along the fingers, where the forearm is inside the object; turned as the body
+        would take the object. The latter two only if all turns are tried. Where an arm presses
+        against what it holds whatever the grip, that is in ``pressed``.
         """
-        thorough = most == MOST_TURNS if thorough is None else thorough
         chosen: list[Grip] = []
         for group in _groups(led_holds(self.source.holds, self.source.companions)):
             usual = list(turns(self.scene.thing(group[0].thing)))[:most]
             miss, grips = self._best_grips(chosen, group, usual)
-            if miss.ratio > 1.0 and miss.cuts and thorough:
+            if miss.ratio > 1.0 and miss.cuts and most == MOST_TURNS:
                 found = self._best_grips(chosen, group, list(drawn_turns()))
                 miss, grips = min((miss, grips), found, key=lambda tried: tried[0].ratio)
-            if miss.ratio > 1.0 and thorough:
+            if miss.ratio > 1.0 and most == MOST_TURNS:
                 found = self._eased_grips(chosen, group, miss, grips)
                 miss, grips = min((miss, grips), found, key=lambda tried: tried[0].ratio)
             chosen += grips
-            self.worst = max(self.worst, miss, key=lambda found: found.ratio)
             if miss.ratio > 1.0 and not (miss.cuts and miss.ratio * CUT_M <= PRESSED_M):
                 return chosen, miss.sentence
             if miss.ratio > 1.0:
@@ -401,8 +387,6 @@ class Draft:
     def key_frames(self, group: list[Hold]) -> list[int]:
         """The frames at which reach is tried in some holds."""
         first, last = min(h.first for h in group), max(h.last for h in group)
-        if self.only:
-            return sorted(frame for frame in self.only if first <= frame <= last)
         keys = {int(frame) for frame in np.linspace(first, last, KEYS)}
         keys |= {frame for frame in self.watched if first <= frame <= last}
         for goals in self.goals.values():
@@ -411,23 +395,22 @@ class Draft:
 
 
 def _beside(grip: Grip) -> str:
-    if grip.beside:
-        both = f"{grip.hold.thing!r} together with {grip.beside!r}"
-        if grip.beyond_m > 0.0:
-            return (
-                f"the {grip.hold.side} hand is too small to hold {both}: the middle of one of "
-                f"them is {1e3 * grip.beyond_m:.0f} mm past its edge"
-            )
-        where = "off" if grip.gap_m > 0.0 else "inside"
+    hand, thing = f"the {grip.hold.side} hand", repr(grip.hold.thing)
+    where = "off" if grip.gap_m > 0.0 else "inside"
+    if grip.beyond_m > 0.0:
         return (
-            f"the {grip.hold.side} hand cannot hold {both}: where it touches {grip.beside!r} it is "
-            f"{1e3 * abs(grip.gap_m):.0f} mm {where} {grip.hold.thing!r}"
+            f"{hand} is too small to hold {thing} together with {grip.beside!r}: the middle of one "
+            f"of them is {1e3 * grip.beyond_m:.0f} mm past its edge"
         )
-    where = "beside" if grip.gap_m > 0.0 else "inside"
+    if grip.beside:
+        return (
+            f"{hand} cannot hold {thing} together with {grip.beside!r}: where it touches that, it "
+            f"is {1e3 * abs(grip.gap_m):.0f} mm {where} {thing}"
+        )
     return (
-        f"the {grip.hold.side} hand would be {where} {grip.hold.thing!r} and not on its surface, "
-        f"though moved by up to {1e3 * OUT_M:.0f} mm along its palm: it has to be recorded nearer, "
-        "or its palm faces elsewhere, which [hand.SIDE] with --assume states"
+        f"{hand} would be {where} {thing} and not on its surface, though moved by up to "
+        f"{1e3 * OUT_M:.0f} mm along its palm: record it nearer, or state where its palm faces, "
+        "[hand.SIDE] with --assume"
     )
 
 
@@ -491,15 +474,10 @@ def _groups(holds: tuple[Hold, ...]) -> list[list[Hold]]:
 
 
 FEW_TURNS = 6
-"""Turns of a grip that are tried where another place or a remedy is sought."""
+"""Turns of a grip that are tried where another place or a remedy is sought [1]."""
 
-TOSS_TURNS = 24
-"""Turns of a grip that are tried for a throw and a catch, each of which takes seconds [1]."""
-
-MOST_CHANGES, MOST_GRIPPED, MOST_PERFORMED = 24, 6, 2
-"""Of a toss so many other places, and so many remedies, are tried by a few postures with palms
-that turn freely; of those that come near, so many by turns of the grips; and so many are performed
-[1]."""
+MOST_CHANGES = 24
+"""So many remedies are tried at most [1]."""
 
 STEPS_M = (
     (0.05, 0.0), (-0.05, 0.0), (0.1, 0.0), (-0.1, 0.0), (0.0, -0.1), (0.0, 0.1),
@@ -510,75 +488,16 @@ STEPS_M = (
 NEARER_M = (0.05, 0.1, 0.15, 0.2, 0.3)
 HIGHER_M = (0.1, -0.1, 0.2, -0.2, 0.4, -0.4)
 DRAWN_M = (0.1, 0.2, 0.3)
-"""Remedies that are tried where something is out of reach [m]: standing, fixed things, others."""
-
-BOTH_M = 0.2
-"""How much nearer things are where fixed ones are higher or lower besides [m]."""
-
-TALLER_M = 0.02
-"""A recorded body that is so much taller is tried, too [m]."""
-
-TOLD_M = 0.005
-"""A correction of a grip that is told [m]."""
+"""Remedies that are tried where something is out of reach [m]: standing, fixed objects, others."""
 
 SMALLER = 0.7
 """Likewise the size of what can be moved [1]."""
 
+TALLER_M = 0.02
+"""A recorded body that is so much taller is tried, too [m]."""
 
-Performs = Callable[[Draft], bool]
-"""Whether the motion of a draft passes every gate."""
-
-
-class BeyondReachError(PlanError):
-    """A palm does not come to where it is to be, however it is turned."""
-
-    def __init__(self, beyond: Beyond) -> None:
-        super().__init__(beyond.sentence)
-        self.frame = beyond.frame
-
-
-@dataclass
-class Search:
-    """Finds which other place or remedy does; of a toss it tries no more than ``MOST_...``."""
-
-    source: Source
-    style: Style
-    frames: frozenset[int] = frozenset()
-    """Frames of a toss at which reach is tried first."""
-
-    performs: Performs | None = None
-    """Tries the motion of a toss that is in reach; left out, reach is enough."""
-
-    changes: int = 0
-    gripped: int = 0
-    performed: int = 0
-
-    def finds(self, scene: Scene, human: Human, most: int = FEW_TURNS) -> bool:
-        """Whether a body does it from just there, as far as that is tried."""
-        if not self.source.tosses:
-            return is_possible(self.source, scene, human, most)
-        if self.changes == MOST_CHANGES or self.gripped == MOST_GRIPPED:
-            return False
-        self.changes += 1
-        try:
-            check_stance(scene, human)
-            draft = Draft(self.source, scene, human, self.style)
-            if draft.beyond(self.frames):
-                return False
-            self.gripped += 1
-            grips, missed = draft.reachable_grips(FEW_TURNS)
-        except PlanError:
-            return False
-        if missed is not None or draft.pressed:
-            return False
-        draft.grips = tuple(grips)
-        return self.performs is None or self._performs(draft, self.performs)
-
-    def _performs(self, draft: Draft, performs: Performs) -> bool:
-        if self.performed == MOST_PERFORMED:
-            return False
-        self.performed += 1
-        return performs(draft)
+ADJUSTED_M = 0.005
+"""An adjustment of a grip that is reported [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -623,57 +542,43 @@ class Plan:
         ]
 
 
-def plan(source: Source, scene: Scene, human: Human, *, care: Care | None = None) -> Plan:
-    """Decide what a body is to do, before anything moves.
-
-    Raises:
-        PlanError: Something is out of reach or cannot be put down; the message says what would
-            help.
-    """
-    return led(reachable(source, scene, human), care or Care())
-
-
 def reachable(
     source: Source,
     scene: Scene,
     human: Human,
     style: Style | None = None,
     watched: frozenset[int] = frozenset(),
-    performs: Performs | None = None,
 ) -> Draft:
     """Goals, and grips that reach them, from where it stands or, unless it stays, from nearby.
 
+    Reach is also tried at the ``watched`` frames; without any grip that reaches there, nothing
+    else is sought that would help.
+
     Raises:
-        PlanError: As ``plan`` says.
+        PlanError: Something is out of reach or cannot be put down; the message says what would
+            help.
     """
     style = style or own_style(source)
     check_companions(source, scene, human)
     pressed: Draft | None = None
-    frames = frozenset(frame for toss in source.tosses for frame in (toss.first, toss.last))
     try:
         found = _draft(source, scene, human, style, watched)
         if not found.pressed:
             return found
         pressed, why = found, found.pressed[0]
-    except BeyondReachError as error:
-        frames |= {error.frame}
-        why = str(error)
     except PlanError as error:
         why = str(error)
-    places = Search(source, style, frames)
     for ahead_m, aside_m in () if scene.stays else STEPS_M:
         nearby = beside(scene, ahead_m, aside_m)
-        if places.finds(nearby, human):
+        if is_possible(source, nearby, human):
             found = _draft(source, nearby, human, style, watched)
-            way = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
-            found.told.append(f"stands {way} of the given place, since there {why}")
+            place = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
+            found.told.append(f"stands {place} of the given place, since there {why}")
             return found
     if pressed:
         pressed.told += [f"whatever the grip, {told}" for told in pressed.pressed]
         return pressed
-    if watched:
-        raise PlanError(why)
-    raise PlanError(f"{why}; {_remedy(Search(source, style, frames, performs), scene, human)}")
+    raise PlanError(why if watched else f"{why}; {_remedy(source, scene, human)}")
 
 
 def why_unreachable(source: Source, scene: Scene, human: Human, style: Style) -> str | None:
@@ -683,6 +588,18 @@ def why_unreachable(source: Source, scene: Scene, human: Human, style: Style) ->
     except PlanError as error:
         return str(error)
     return found.pressed[0] if found.pressed else None
+
+
+def is_possible(source: Source, scene: Scene, human: Human, most: int = FEW_TURNS) -> bool:
+    """Whether a body comes to every goal from just there, with few turns of its grips tried."""
+    try:
+        check_stance(scene, human)
+        draft = Draft(source, scene, human, own_style(source))
+        if draft.beyond():
+            return False
+        return draft.reachable_grips(most)[1] is None and not draft.pressed
+    except PlanError:
+        return False
 
 
 def led(draft: Draft, care: Care) -> Plan:
@@ -708,15 +625,14 @@ def _draft(
 ) -> Draft:
     check_stance(scene, human)
     draft = Draft(source, scene, human, style, watched)
-    if source.tosses:
-        beyond = draft.beyond()
-        if beyond:
-            raise BeyondReachError(beyond)
-        grips, missed = draft.reachable_grips(TOSS_TURNS, thorough=True)
-    else:
-        grips, missed = draft.reachable_grips()
-    if missed is not None:
-        raise PlanError(missed)
+    grips, out_of_reach = draft.reachable_grips(1)
+    if out_of_reach is not None or draft.pressed:
+        if missed := draft.beyond():
+            raise PlanError(missed)
+        draft.pressed.clear()
+        grips, out_of_reach = draft.reachable_grips()
+    if out_of_reach is not None:
+        raise PlanError(out_of_reach)
     draft.grips = tuple(grips)
     return draft
 
@@ -729,49 +645,39 @@ def beside(scene: Scene, ahead_m: float, aside_m: float) -> Scene:
     return replace(scene, place=(float(x), float(y)))
 
 
-def _remedy(search: Search, scene: Scene, human: Human) -> str:
+def _remedy(source: Source, scene: Scene, human: Human) -> str:
     """What would make it possible."""
-    for words, changed, body in _remedies(search.source, scene, human):
-        most = FEW_TURNS if body is human else MOST_TURNS
-        if search.finds(changed, body, most):
+    for words, changed, body in itertools.islice(_remedies(source, scene, human), MOST_CHANGES):
+        if is_possible(source, changed, body):
             return f"{words} would do"
-    if search.source.tosses:
-        return (
-            f"none of {search.changes} other heights, sizes, nearer places and bodies that were "
-            "tried would do"
-        )
     return "no other height, size, nearer place or recorded body that was tried would do"
 
 
 def _remedies(source: Source, scene: Scene, human: Human) -> Iterator[tuple[str, Scene, Human]]:
     """What may help, in words, and the scene and the body with it."""
     fixed = [name for name, thing in scene.things.items() if thing.tag is TagType.FIXED]
-    levels = [(name, by_m) for name in fixed for by_m in HIGHER_M]
+    levels = {
+        f"{name!r} {abs(by_m):.1f} m {'higher' if by_m > 0 else 'lower'}": raised(scene, name, by_m)
+        for name in fixed
+        for by_m in HIGHER_M
+    }
     for by_m in NEARER_M if scene.stays else ():
         yield f"standing {by_m:.2f} m further ahead", beside(scene, by_m, 0.0), human
-    for name, by_m in levels:
-        yield _higher(name, by_m), raised(scene, name, by_m), human
+    for words, level in levels.items():
+        yield words, level, human
+    nearer = "what can be moved {:.1f} m nearer to the performer"
     for by_m in DRAWN_M:
-        words = f"what can be moved {by_m:.1f} m nearer to the performer"
-        yield words, _drawn_nearer(scene, by_m), human
+        yield nearer.format(by_m), _drawn_nearer(scene, by_m), human
     for name in mobile(scene):
-        smaller = resized_with(scene, name, SMALLER)
         words = " and ".join(repr(one) for one in (name, *taken_with(scene, name)))
+        smaller = resized_with(scene, name, SMALLER)
         yield f"{words} of {SMALLER:.1f} times the size", smaller, human
-    for name, by_m in levels:
-        words = f"what can be moved {BOTH_M:.1f} m nearer to the performer"
-        nearer = _drawn_nearer(raised(scene, name, by_m), BOTH_M)
-        yield f"{_higher(name, by_m)} and {words}", nearer, human
-    for thing, (name, by_m) in itertools.product(mobile(scene), levels):
-        words = f"{_higher(name, by_m)} and {thing!r} of {SMALLER:.1f} times the size"
-        yield words, resized(raised(scene, name, by_m), thing, SMALLER), human
     recorded_m, own_m = (body.measures["stature"] for body in (source.human, human))
     if recorded_m > own_m + TALLER_M:
         yield f"a body as tall as the recorded one, {recorded_m:.2f} m,", scene, source.human
-
-
-def _higher(name: str, by_m: float) -> str:
-    return f"{name!r} {abs(by_m):.1f} m {'higher' if by_m > 0 else 'lower'}"
+    for words, level in levels.items():
+        both = f"{words} and {nearer.format(DRAWN_M[1])}"
+        yield both, _drawn_nearer(level, DRAWN_M[1]), human
 
 
 def _drawn_nearer(scene: Scene, by_m: float) -> Scene:
@@ -784,51 +690,27 @@ def _drawn_nearer(scene: Scene, by_m: float) -> Scene:
     return scene
 
 
-def is_possible(source: Source, scene: Scene, human: Human, most: int = FEW_TURNS) -> bool:
-    """Whether a body comes to every goal from just there, with few turns of its grips tried."""
-    try:
-        check_stance(scene, human)
-        draft = Draft(source, scene, human, own_style(source))
-        return draft.reachable_grips(most)[1] is None and not draft.pressed
-    except PlanError:
-        return False
-
-
 def _notes(
     source: Source, grips: tuple[Grip, ...], goals: Mapping[str, list[Goal]]
 ) -> tuple[str, ...]:
     out = list(source.notes)
     for grip in (one for one in grips if not one.beside):
-        if grip.turn.drawn_m > 0.0:
+        turn, rows = grip.turn, list[tuple[float, str]]()
+        rows.append((1e3 * turn.drawn_m, "{:.0f} mm back along its fingers"))
+        if abs(grip.out_m) > ADJUSTED_M:
+            rows.append((1e3 * grip.out_m, "{:+.0f} mm off its surface"))
+        rows.append((1e3 * round(grip.raised_m, 3), "{:.0f} mm higher"))
+        angles = (turn.yaw, turn.pitch, turn.tilt, float(np.linalg.norm(turn.eased)))
+        names = ("about it", "about the palm's normal", "across the palm", "as the body takes it")
+        rows += [
+            (float(np.degrees(angle)), f"{{:.0f}} degrees {name}")
+            for angle, name in zip(angles, names, strict=True)
+        ]
+        changes = [text.format(value) for value, text in rows if value]
+        if changes:
+            hold = grip.hold
             out.append(
-                f"the {grip.hold.side} hand takes {grip.hold.thing!r} drawn back by "
-                f"{1e3 * grip.turn.drawn_m:.0f} mm along its fingers, so that its forearm stays "
-                "outside"
-            )
-        if abs(grip.out_m) > TOLD_M:
-            way = "off" if grip.out_m > 0.0 else "towards"
-            out.append(
-                f"the {grip.hold.side} hand's grip is moved {1e3 * abs(grip.out_m):.0f} mm {way} "
-                f"{grip.hold.thing!r}, so that it just touches"
-            )
-        if any(grip.turn.eased):
-            angle = np.degrees(np.linalg.norm(grip.turn.eased))
-            out.append(
-                f"the {grip.hold.side} hand's grip on {grip.hold.thing!r} is turned by {angle:.0f} "
-                "degrees as the body would take it"
-            )
-        if grip.turn.size > 0.0:
-            out.append(
-                f"the {grip.hold.side} hand's grip on {grip.hold.thing!r} is turned by "
-                f"{np.degrees(grip.turn.yaw):.0f} degrees about it, "
-                f"{np.degrees(grip.turn.pitch):.0f} degrees about the palm's normal and "
-                f"{np.degrees(grip.turn.tilt):.0f} degrees across the palm"
-            )
-        if grip.raised_m > 0.0005:
-            higher = f"{grip.raised_m * 1000:.0f} mm higher"
-            out.append(
-                f"the {grip.hold.side} hand takes {grip.hold.thing!r} {higher}, to stay clear of "
-                "what it stands on"
+                f"the {hold.side} hand's grip on {hold.thing!r} is changed: {', '.join(changes)}"
             )
     for name, several in goals.items():
         out += [f"{name!r} at {source.times[g.frame]:.2f} s: {g.reason}" for g in several]

@@ -1,4 +1,26 @@
-"""The whole way from a capture to a verified motion of another body."""
+"""The order of search from a capture to a verified motion of another body.
+
+Each step is taken only if the one before does not do.
+
+======  ================================================  ======================================
+step    what is tried                                     the case that needs it
+======  ================================================  ======================================
+goals   one for each object and event                     (no alternative)
+grips   the recorded one, turned: smallest turns first    a table or crate of another height
+        drawn back along the fingers                      a forearm inside a large object
+        turned as the body itself takes the object        palms of recorded living hands
+place   the given one, then twelve around it              a wrist at its limit
+paths   the recorded one, lifted, kept off at its ends    a table's edge, the rim of a mug
+motion  as planned                                        nearly all
+        more care: wider margins, hands led more firmly   a mug cut in passing, a late hand
+        drawn to the key postures of the grips            an elbow that bent the other way
+        grips that reach where the motion was worst       reach between two key postures
+refuse  remedies: nearer, higher, lower, smaller, taller  what is out of reach
+======  ================================================  ======================================
+
+``planning`` tries goals, grips and places, ``paths`` the paths; this module tries motions and
+keeps the one that fails fewest gates (``quality``).
+"""
 
 from collections.abc import Callable
 
@@ -11,24 +33,14 @@ from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import Style
 
-CARES = (
-    Care(),
-    Care(0.03, 0.015),
-    Care(0.03, 0.015, 1.0),
-    Care(0.05, 0.02, 1.0),
-    Care(weight=2.0),
-    Care(0.03, 0.015, 1.0, weight=2.0),
-)
-"""How free hands keep from things, and how firmly hands are led; the next where that fails."""
+MORE_CARE = Care(margin_m=0.03, off_m=0.015, firm_s=1.0, weight=2.0)
+"""How free hands keep from objects, and how firmly hands are led, where the usual fails."""
 
 BY_CARE = {"penetration", "free hand clear", "event position", "event rotation", "on the way"}
 """The gates that more care may mend: a hand that is led firmly for longer arrives in time."""
 
-BY_GRIP = {"on the way", "event position", "event rotation", "penetration"}
+BY_GRIP = BY_CARE - {"free hand clear"}
 """The gates that another grip may mend."""
-
-GRIPS = 2
-"""So often other grips are sought, which reach also where the motion was worst [1]."""
 
 
 def regenerate(
@@ -36,42 +48,38 @@ def regenerate(
 ) -> tuple[Motion, Quality]:
     """Let a body do in a scene what was recorded; verified at every frame.
 
+    The recorded scene and style, unless stated.
+
     Raises:
         PlanError: It is out of reach or impossible; the message says what would help.
     """
     where = scene or source.scene
-    draft = reachable(source, where, human, style, performs=_performs)
+    draft = reachable(source, where, human, style)
     return best_motion(draft, lambda watched: reachable(source, where, human, style, watched))
 
 
 def best_motion(draft: Draft, again: Callable[[frozenset[int]], Draft]) -> tuple[Motion, Quality]:
-    """The motion of a draft that fails fewest gates."""
+    """The motion of a draft with grips that fails fewest gates.
+
+    ``again`` seeks grips that reach at some frames besides the usual ones, and raises PlanError
+    where there are none.
+    """
     best = _careful(draft)
     if not best[1].passed and draft.grips:
         best = min(best, _careful(draft, guide_of(draft)), key=_failures)
-    watched: frozenset[int] = frozenset()
-    for _ in range(0 if draft.pressed else GRIPS):
-        held = [gate for gate in best[1].gates if not gate.passed and gate.name in BY_GRIP]
-        if not held or watched.issuperset(gate.frame for gate in held):
-            break
-        watched |= {gate.frame for gate in held}
+    worst = {g.frame for g in best[1].gates if not g.passed and g.name in BY_GRIP}
+    if worst and not draft.pressed:
         try:
-            found = _careful(again(watched))
+            best = min(best, _careful(again(frozenset(worst))), key=_failures)
         except PlanError:
-            break
-        best = min(best, found, key=_failures)
+            return best
     return best
-
-
-def _performs(draft: Draft) -> bool:
-    """Whether the motion of a draft passes every gate."""
-    return _careful(draft)[1].passed
 
 
 def _careful(draft: Draft, guide: Guide | None = None) -> tuple[Motion, Quality]:
     """The best motion of some grips, hands being led with more care where it takes that."""
     tried: list[tuple[Motion, Quality]] = []
-    for care in CARES:
+    for care in (Care(), MORE_CARE):
         motion = perform_plan(led(draft, care), guide)
         tried.append((motion, quality(motion)))
         if not BY_CARE & set(tried[-1][1].failed):
