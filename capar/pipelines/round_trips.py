@@ -24,14 +24,13 @@ from capar.regeneration.captures import (
     mirrored,
 )
 from capar.regeneration.hand_overs import (
-    JointMotion,
     JointSource,
     joint_source,
     regenerate_together,
 )
 from capar.regeneration.motion import Motion
 from capar.regeneration.quality import Quality
-from capar.regeneration.scenes import USUAL, Draw, PlanError, Scene, drawn_scene
+from capar.regeneration.scenes import PlanError, Scene, drawn_scene
 from capar.regeneration.search import regenerate
 from capar.regeneration.sources import Source, source_of
 
@@ -139,11 +138,11 @@ def round_trips(
             yield round_trip(source, agent, human, number, scene)
 
 
-def numbered_scene(source: Source, number: int, seed: int, draw: Draw = USUAL) -> Scene:
+def numbered_scene(source: Source, number: int, seed: int) -> Scene:
     """The drawn scene of that number; 0 is the recorded one."""
     if not number:
         return source.scene
-    return drawn_scene(source.scene, np.random.default_rng([seed, number]), draw)
+    return drawn_scene(source.scene, np.random.default_rng([seed, number]))
 
 
 def round_trip(source: Source, agent: str, human: Human, number: int, scene: Scene) -> Trip:
@@ -153,30 +152,22 @@ def round_trip(source: Source, agent: str, human: Human, number: int, scene: Sce
     except PlanError as error:
         return Trip(agent, number, str(error), None, False, False, False, "", None)
     made = capture_of(motion, name=source.capture.name, agent=agent)
-    first, again = source.observation, observe(made, rules=source.observation.profile)
+    return Trip(agent, number, "", quality, *_again(source.observation, made), motion)
+
+
+def _again(first: Observation, made: Capture) -> tuple[bool, bool, bool, str]:
+    """Whether PAR, contacts and relations come out again, and what came instead of the PAR."""
+    again = observe(made, rules=first.profile)
     one, two = first.complex_par, again.complex_par
-    differ = one.signature != two.signature
-    return Trip(
-        agent, number, "", quality,
-        not differ,
-        contact_pairs(first) == contact_pairs(again),
-        one.relations == two.relations,
-        step_names(again) if differ else "",
-        motion,
-    )  # fmt: skip
-
-
-def contact_pairs(observation: Observation) -> list[tuple[str, str]]:
-    """Who touched what, in order of time for each pair of bodies."""
-    facts = (each for each in observation.facts if isinstance(each, Touching))
-    return sorted((each.body, each.other) for each in facts)
-
-
-def step_names(observation: Observation) -> str:
-    """The names of all segments, link by link."""
-    return "; ".join(
-        f"{link.ee}: {' '.join(each.name for each in link.segments)}" for link in observation.links
+    pairs = [
+        sorted((each.body, each.other) for each in seen.facts if isinstance(each, Touching))
+        for seen in (first, again)
+    ]
+    same = one.signature == two.signature
+    names = "; ".join(
+        f"{link.ee}: {' '.join(each.name for each in link.segments)}" for link in again.links
     )
+    return same, pairs[0] == pairs[1], one.relations == two.relations, "" if same else names
 
 
 @dataclass(frozen=True)
@@ -273,17 +264,5 @@ def joint_round_trip(
         made = regenerate_together(source, humans, scenes)
     except PlanError as error:
         return JointTrip(agents, number, str(error), (), False, False, False, "")
-    return compared(source, agents, number, made)
-
-
-def compared(source: JointSource, agents: str, number: int, made: JointMotion) -> JointTrip:
-    """What comes out when the motions are observed again."""
-    capture = joint_capture_of(made, name=source.capture.name)
-    first = source.observation
-    again = observe(capture, rules=first.profile)
-    one, two = first.complex_par, again.complex_par
-    same = one.signature == two.signature
-    return JointTrip(
-        agents, number, "", made.failed, same, contact_pairs(first) == contact_pairs(again),
-        one.relations == two.relations, "" if same else step_names(again),
-    )  # fmt: skip
+    again = _again(source.observation, joint_capture_of(made, name=source.capture.name))
+    return JointTrip(agents, number, "", made.failed, *again)

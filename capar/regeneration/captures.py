@@ -1,7 +1,6 @@
 """Captures: assumptions about a recording, its mirror image, and motions written out."""
 
-import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -19,12 +18,12 @@ from capar.body.scenes import Thing, box
 from capar.body.scripts import SIDES
 from capar.body.sensors import PERFECT, Tracker
 from capar.body.shapes import segment_surface
-from capar.model.capture import Agent, Capture, PivotContact, Role, Sensor, Shape, Stream, TagType
+from capar.model.capture import Agent, Capture, Role, Sensor, Shape, Stream, TagType
 from capar.model.errors import CaparError, FileError
-from capar.model.geometry import runs, transforms
+from capar.model.geometry import runs
 from capar.regeneration.hand_overs import JointMotion
 from capar.regeneration.motion import Motion
-from capar.regeneration.scenes import Scene
+from capar.regeneration.scenes import Scene, check_keys, read_toml
 from capar.regeneration.sources import HandAxes, Source, eyes_in_body
 from capar.regeneration.stepping import Stepping
 
@@ -32,31 +31,23 @@ from capar.regeneration.stepping import Stepping
 def capture_of(
     motion: Motion, *, name: str, agent: str, tracker: Tracker = PERFECT, seed: int = 0
 ) -> Capture:
-    """What a tracker would have recorded of a motion."""
+    """What a tracker would have recorded of a motion; without faults, unless stated."""
     plan = motion.plan
-    measures = plan.human.measures
-    kind = "child" if measures.adult_share < 0.5 else measures.adult
-    stated = {each: round(value, 4) for each, value in measures.values.items()}
     made = Performance(
-        human=plan.human,
-        scene=scenes.Scene(plan.scene.things),
-        script=(),
-        times=np.array(plan.source.times),
-        motion=motion.postures,
-        things=plan.things,
-        phases=(),
-        gazes=plan.looks,
-        looks=(),
-        slip_m={},
-    )
-    return record(
-        made,
-        name=name,
-        seed=seed,
-        tracker=tracker,
-        sensors=(*(f"{side}_hand" for side in plan.hands), "head"),
-        agent=Agent(agent, kind, {"age": measures.age, **stated}),
-    )
+        human=plan.human, scene=scenes.Scene(plan.scene.things), script=(),
+        times=np.array(plan.source.times), motion=motion.postures, things=plan.things,
+        phases=(), gazes=plan.looks, looks=(), slip_m={},
+    )  # fmt: skip
+    worn = (*(f"{side}_hand" for side in plan.hands), "head")
+    who = _agent(agent, plan.human)
+    return record(made, name=name, seed=seed, tracker=tracker, sensors=worn, agent=who)
+
+
+def _agent(name: str, human: Human) -> Agent:
+    measures = human.measures
+    kind = "child" if measures.adult_share < 0.5 else measures.adult
+    stated = {key: round(value, 4) for key, value in measures.values.items()}
+    return Agent(name, kind, {"age": measures.age, **stated})
 
 
 def renamed(capture: Capture, names: Mapping[str, str]) -> Capture:
@@ -85,25 +76,17 @@ def write_motion(motion: Motion, capture: Capture, folder: Path) -> None:
 
 def truth_of_motion(motion: Motion) -> Truth:
     """What was planned, as the truth of a motion."""
-    times = motion.plan.source.times
-    contacts = sorted(
-        (first, second, float(times[a]), float(times[b]))
-        for first, second, a, b in _contacts(motion)
-    )
+    source, times = motion.plan.source, motion.plan.source.times
+    contacts = [(f"{h.side}_hand", h.thing, h.first, h.last) for h in source.holds]
+    contacts += [(m.thing, m.part, m.first, m.last) for m in source.meetings]
+    rows = sorted((one, two, float(times[a]), float(times[b])) for one, two, a, b in contacts)
     goals = motion.plan.goals.items()
     moves = tuple((n, float(times[g[0].frame]), float(times[g[-1].frame])) for n, g in goals)
     phases = tuple(
         (f"{each.ee}_{each.index}_{each.name}", float(times[each.first]), float(times[each.last]))
-        for each in motion.plan.source.observation.segments
+        for each in source.observation.segments
     )
-    return Truth(tuple(contacts), moves, phases, ())
-
-
-def _contacts(motion: Motion) -> Iterator[tuple[str, str, int, int]]:
-    for hold in motion.plan.source.holds:
-        yield f"{hold.side}_hand", hold.thing, hold.first, hold.last
-    for meeting in motion.plan.source.meetings:
-        yield meeting.thing, meeting.part, meeting.first, meeting.last
+    return Truth(tuple(rows), moves, phases, ())
 
 
 LOCAL = np.diag([1.0, -1.0, 1.0])
@@ -113,16 +96,15 @@ OTHER = {"right": "left", "left": "right"}
 
 
 def mirrored(capture: Capture, place: tuple[float, float], heading: float) -> Capture:
-    """The capture mirrored at the performer's median plane, hands renamed.
+    """The capture mirrored at the median plane of a performer, hands renamed.
 
     Args:
         capture: As it was recorded.
         place: Where the performer stands [m].
         heading: Which way the performer faces [rad].
     """
-    normal = np.array([-np.sin(heading), np.cos(heading), 0.0])
-    plane = np.eye(3) - 2.0 * np.outer(normal, normal)
-    origin = np.array([*place, 0.0])
+    normal = np.array([[-np.sin(heading), np.cos(heading), 0.0]])
+    origin = np.array([[*place, 0.0]])
     names = {sensor.name: _renamed(sensor.name) for sensor in capture.sensors}
     sensors = tuple(
         replace(
@@ -130,7 +112,7 @@ def mirrored(capture: Capture, place: tuple[float, float], heading: float) -> Ca
             name=names[sensor.name],
             side=OTHER.get(sensor.side, sensor.side),
             link=_renamed(sensor.link),
-            stream=_stream(sensor.stream, plane, origin),
+            stream=_reflected(sensor.stream, origin, normal),
             shape=mirrored_shape(sensor.shape),
             gaze=_vector(sensor.gaze),
             eye=_vector(sensor.eye),
@@ -139,43 +121,23 @@ def mirrored(capture: Capture, place: tuple[float, float], heading: float) -> Ca
         for sensor in capture.sensors
     )
     objects = tuple(
-        replace(
-            thing, stream=_stream(thing.stream, plane, origin), shape=mirrored_shape(thing.shape)
-        )
-        for thing in capture.objects
+        replace(o, stream=_reflected(o.stream, origin, normal), shape=mirrored_shape(o.shape))
+        for o in capture.objects
     )
+    pivots = tuple(
+        replace(p, first=names.get(p.first, p.first), second=names.get(p.second, p.second))
+        for p in capture.pivot_contacts
+    )
+    conventions = {names.get(name, name): one for name, one in capture.conventions.items()}
     return replace(
-        capture,
-        sensors=sensors,
-        objects=objects,
-        pivot_contacts=tuple(_pivot(pair, names) for pair in capture.pivot_contacts),
-        purposes=(),
-        conventions={
-            names.get(name, name): convention for name, convention in capture.conventions.items()
-        },
-    )
-
-
-def _pivot(pair: PivotContact, names: Mapping[str, str]) -> PivotContact:
-    first, second = pair.first, pair.second
-    return replace(pair, first=names.get(first, first), second=names.get(second, second))
+        capture, sensors=sensors, objects=objects, pivot_contacts=pivots, purposes=(),
+        conventions=conventions,
+    )  # fmt: skip
 
 
 def _renamed(name: str) -> str:
     """``right_hand`` and ``hand_right`` for the other side."""
     return "_".join(OTHER.get(part, part) for part in name.split("_"))
-
-
-def _stream(
-    stream: Stream, plane: Float[np.ndarray, "3 3"], origin: Float[np.ndarray, "3"]
-) -> Stream:
-    known = ~stream.lost
-    spots, turns = np.full_like(stream.positions, np.nan), np.full_like(stream.orientations, np.nan)
-    spots[known] = (stream.positions[known] - origin) @ plane + origin
-    before = Rotation.from_quat(stream.orientations[known], scalar_first=True).as_matrix()
-    turned = Rotation.from_matrix(plane @ before @ LOCAL)
-    turns[known] = turned.as_quat(scalar_first=True)
-    return Stream(np.array(stream.times), spots, turns)
 
 
 def mirrored_shape(shape: Shape | None) -> Shape | None:
@@ -234,33 +196,24 @@ class Completion:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is assumed, in sentences."""
+        """What is assumed, in words."""
         out = []
         if self.from_s > 0.0 or np.isfinite(self.to_s):
-            out.append(f"assumed: only {self.from_s:g} to {self.to_s:g} s of the recording")
+            out.append(f"only {self.from_s:g} to {self.to_s:g} s of the recording")
         if self.stature_m is not None:
-            out.append(f"assumed: a {self.kind or 'person'} of {self.stature_m:.2f} m was recorded")
+            out.append(f"a {self.kind or 'person'} of {self.stature_m:.2f} m was recorded")
         if self.floor_m:
-            out.append(f"assumed: the floor is at {self.floor_m:.2f} m")
+            out.append(f"the floor is at {self.floor_m:.2f} m")
         if self.place is not None:
             x, y = self.place
-            out.append(
-                f"assumed: the performer stands at ({x:.2f}, {y:.2f}) m, facing "
-                f"{self.heading_deg:.0f} degrees"
-            )
-        for hand, thing in self.mirrored.items():
-            out.append(
-                f"assumed: {hand!r} has no sensor and is the other hand's mirror image in the "
-                f"middle plane of {thing!r}"
-            )
-        for thing, (x, y) in self.sizes.items():
-            out.append(f"assumed: {thing!r} is {x:.2f} x {y:.2f} m")
-        for side, axes in self.axes.items():
-            out.append(
-                f"assumed: in its sensor's frame the {side} hand's fingers point to "
-                f"{_told(axes.fingers)} and its palm faces {_told(axes.palm)}"
-            )
-        return tuple(out)
+            out.append(f"the performer stands at ({x:.2f}, {y:.2f}) m, {self.heading_deg:.0f} deg")
+        out += [f"{hand!r} mirrors the other at {thing!r}" for hand, thing in self.mirrored.items()]
+        out += [f"{thing!r} is {x:.2f} x {y:.2f} m" for thing, (x, y) in self.sizes.items()]
+        out += [
+            f"the {side} hand's fingers point to {axes.fingers} and its palm faces {axes.palm}"
+            for side, axes in self.axes.items()
+        ]
+        return tuple(f"assumed: {text}" for text in out)
 
 
 def read_completion(path: Path) -> Completion:
@@ -275,20 +228,15 @@ def read_completion(path: Path) -> Completion:
     Raises:
         FileError: The file cannot be read, or says something else.
     """
-    try:
-        table = tomllib.loads(path.read_text("utf-8"))
-    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise FileError(path, f"is no TOML: {error}.", "See `capar regenerate --help`.") from None
-    performer = _table(path, table, "performer")
-    mirrored, sizes = (_table(path, table, name) for name in ("mirrored", "assumed_size"))
-    _check_keys(path, "the file", table, KEYS)
-    _check_keys(path, "[performer]", performer, PERFORMER_KEYS)
-    hands = {
-        side: _table(path, _table(path, table, "hand"), side) for side in table.get("hand", {})
-    }
-    _check_keys(path, "[hand]", hands, set(OTHER))
+    table = read_toml(path, KEYS)
+    performer, mirrored, sizes, hand = (
+        _table(path, table, name) for name in ("performer", "mirrored", "assumed_size", "hand")
+    )
+    check_keys(path, "[performer]", performer, PERFORMER_KEYS)
+    check_keys(path, "[hand]", hand, set(OTHER))
+    hands = {side: _table(path, hand, side) for side in hand}
     for side, row in hands.items():
-        _check_keys(path, f"[hand.{side}]", row, HAND_KEYS)
+        check_keys(path, f"[hand.{side}]", row, HAND_KEYS)
     try:
         place = performer.get("place")
         return Completion(
@@ -317,10 +265,6 @@ def _axes(row: Mapping[str, Any]) -> HandAxes:
     return HandAxes(fingers, palm)
 
 
-def _told(direction: Float[np.ndarray, "3"]) -> str:
-    return "(" + ", ".join(f"{x:g}" for x in direction) + ")"
-
-
 def completed(capture: Capture, completion: Completion) -> Capture:
     """The capture with what is assumed of it.
 
@@ -347,19 +291,14 @@ def completed(capture: Capture, completion: Completion) -> Capture:
 def _sized(capture: Capture, name: str, size: tuple[float, float]) -> Capture:
     thing = capture.tag_object(name)
     if not thing.assumed or thing.shape is None:
-        raise CaparError(
-            f"the size of {name!r} is recorded; [assumed_size] is for {_assumed(capture)}"
-        )
+        known = ", ".join(o.name for o in capture.objects if o.assumed) or "nothing in this capture"
+        raise CaparError(f"the size of {name!r} is recorded; [assumed_size] is for {known}")
     middle = thing.shape.bounds.mean(axis=0)
     factors = np.array([*size, thing.shape.size[2]]) / thing.shape.size
     vertices = (np.array(thing.shape.vertices) - middle) * factors + middle
     shape = replace(thing.shape, vertices=vertices)
     objects = (replace(o, shape=shape) if o.name == name else o for o in capture.objects)
     return replace(capture, objects=tuple(objects))
-
-
-def _assumed(capture: Capture) -> str:
-    return ", ".join(o.name for o in capture.objects if o.assumed) or "nothing in this capture"
 
 
 def _cut(capture: Capture, from_s: float, to_s: float) -> Capture:
@@ -426,15 +365,15 @@ def _mirrored_hand(capture: Capture, hand: str, thing: str, heading_deg: float) 
 
 
 def _reflected(
-    stream: Stream, origins: Float[np.ndarray, "frames 3"], normals: Float[np.ndarray, "frames 3"]
+    stream: Stream, origins: Float[np.ndarray, "#frames 3"], normals: Float[np.ndarray, "#frames 3"]
 ) -> Stream:
-    """A stream as a mirror shows it that may be elsewhere at every frame."""
+    """A stream as a mirror shows it, which may be elsewhere at every frame."""
     planes = np.eye(3) - 2.0 * np.einsum("fi,fj->fij", normals, normals)
     spots = np.einsum("fij,fj->fi", planes, stream.positions - origins) + origins
-    turns = np.full_like(stream.orientations, np.nan)
-    known = ~stream.lost
-    poses = transforms(np.zeros((int(known.sum()), 3)), stream.orientations[known])
-    turned = Rotation.from_matrix(planes[known] @ poses.rotation.as_matrix() @ LOCAL)
+    turns, known = np.full_like(stream.orientations, np.nan), ~stream.lost
+    before = Rotation.from_quat(stream.orientations[known], scalar_first=True).as_matrix()
+    planes = np.broadcast_to(planes, (len(known), 3, 3))
+    turned = Rotation.from_matrix(planes[known] @ before @ LOCAL)
     turns[known] = turned.as_quat(scalar_first=True)
     return Stream(np.array(stream.times), spots, turns)
 
@@ -451,14 +390,6 @@ def _table(path: Path, table: Mapping[str, Any], name: str) -> dict[str, Any]:
     if not isinstance(found, dict):
         raise FileError(path, f"{name} is no table.", f"Write [{name}].")
     return found
-
-
-def _check_keys(path: Path, where: str, row: Mapping[str, Any], known: set[str]) -> None:
-    for key in row:
-        if key not in known:
-            raise FileError(
-                path, f"unknown key {key!r} in {where}.", f"There are: {', '.join(sorted(known))}."
-            )
 
 
 def joint_capture_of(made: JointMotion, *, name: str) -> Capture:
@@ -511,13 +442,10 @@ def capture_of_steps(made: Stepping, *, name: str, agent: str) -> Capture:
         human=human, scene=there, script=(), times=made.times, motion=made.postures, things=paths,
         phases=(), gazes=looks, looks=(), slip_m={},
     )  # fmt: skip
-    measures = human.measures
-    kind = "child" if measures.adult_share < 0.5 else measures.adult
-    stated = {key: round(value, 4) for key, value in measures.values.items()}
     worn = tuple(f"{side}_{part}" for part in ("hand", "foot") for side in SIDES)
     capture = record(
         moved, name=name, seed=0, tracker=PERFECT, sensors=(*worn, "head"), eye_tracker=False,
-        agent=Agent(agent, kind, {"age": measures.age, **stated}),
+        agent=_agent(agent, human),
     )  # fmt: skip
     sensors = tuple(_shod(made, sensor) for sensor in capture.sensors)
     return replace(capture, sensors=sensors)

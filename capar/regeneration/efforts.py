@@ -1,4 +1,4 @@
-"""Efforts: four parameters of manner, how they reshape paths, and how they are measured."""
+"""Efforts: four parameters of manner with which a recorded action is performed."""
 
 import itertools
 import tomllib
@@ -9,7 +9,6 @@ from importlib import resources
 
 import numpy as np
 from jaxtyping import Float
-from scipy.optimize import brentq, least_squares
 from scipy.spatial.transform import RigidTransform, Rotation, Slerp
 
 from capar.body.human import Human
@@ -17,13 +16,11 @@ from capar.model.errors import CaparError, UnknownNameError
 from capar.regeneration.body_frames import body_frames
 from capar.regeneration.goals import thing_goals
 from capar.regeneration.motion import Motion
-from capar.regeneration.paths import Care
-from capar.regeneration.planning import Draft, Plan, led
-from capar.regeneration.quality import Quality, performed_hands
+from capar.regeneration.quality import Quality, failures
 from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.search import regenerate
 from capar.regeneration.sources import Source
-from capar.regeneration.styles import SHORT_M, Kind, Style, arc_shares, own_style, paced, retimed
+from capar.regeneration.styles import SHORT_M, Kind, Style, arc_shares, paced, retimed
 
 POLES = {
     "time": ("sustained", "sudden"),
@@ -413,151 +410,6 @@ def _replaced(path: RigidTransform, first: int, part: RigidTransform) -> RigidTr
     return RigidTransform.concatenate([piece for piece in pieces if len(piece)])
 
 
-WORTH_M = 0.1
-"""Shorter ways tell no effort [m]."""
-
-FREE = 0.05
-"""Bound flow that is less cannot be told from free flow where no way ends free [1]."""
-
-MOST = 1.5
-"""How far beyond the poles an effort is measured [1]."""
-
-
-@dataclass(frozen=True)
-class MeasuredEffort:
-    """Parameters that can be measured in a performed motion; None for those that cannot."""
-
-    time: float | None
-    weight: float | None
-    space: float | None
-    flow: float | None
-
-    @property
-    def values(self) -> dict[str, float | None]:
-        """By parameter."""
-        return {"time": self.time, "weight": self.weight, "space": self.space, "flow": self.flow}
-
-    def __str__(self) -> str:
-        """For people."""
-        return ", ".join(
-            f"{name} {value:+.2f}" if value is not None else f"{name} not measured"
-            for name, value in self.values.items()
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class _Pair:
-    """A stretch of a hand's way as planned without an effort, and as it was performed."""
-
-    stretch: Stretch
-    old: RigidTransform
-    new: RigidTransform
-    other_detour: bool
-    """Whether they are led around things otherwise."""
-
-
-def measured_effort(motion: Motion, style: Style) -> MeasuredEffort:
-    """Fit the profiles of an effort to the ways of the performed hands.
-
-    They are compared with what the same body would do in the same scene without an effort. Time,
-    weight and bound flow are those with which the share of each free way that is covered comes
-    nearest to the performed one, by least squares; the last free ways, which free flow overshoots,
-    are left out. Free flow is told by how far a hand goes beyond the end of these. Space is the one
-    with which the ways become as much longer than straight as the performed ones are; ways that
-    are led around something otherwise than without an effort are left out.
-    """
-    pairs = list(_pairs(motion, style))
-    inner = [pair for pair in pairs if not pair.stretch.ends_free]
-    last = [pair for pair in pairs if pair.stretch.ends_free and _chord_m(pair.new) >= WORTH_M]
-    time = weight = bound = None
-    if inner:
-        time, weight, bound = _timing(inner)
-    beyond = [_beyond(pair.new) - _beyond(pair.old) for pair in last]
-    flow = bound if last or (bound or 0.0) > FREE else None
-    if beyond and max(beyond) > 0.1 * OVERSHOOT:
-        flow = -float(np.mean(beyond)) / OVERSHOOT
-    straight = [pair for pair in inner if not pair.other_detour and _chord_m(pair.old) >= WORTH_M]
-    return MeasuredEffort(time, weight, _space(straight, weight or 0.0), flow)
-
-
-def _pairs(motion: Motion, style: Style) -> Iterator[_Pair]:
-    plan, usual = motion.plan, _without_effort(motion, style)
-    for side, new in performed_hands(motion).items():
-        turns = [frame for hand, frame in {*plan.detours, *usual.detours} if hand == side]
-        other = [f for f in turns if plan.detours.get((side, f)) != usual.detours.get((side, f))]
-        edges = hand_edges(plan.source, side)
-        for stretch in hand_stretches(plan.source, side):
-            part = slice(stretch.first, stretch.last + 1)
-            old, start = usual.hands[side][part], max(e for e in edges if e <= stretch.first)
-            if turned_way(old)[-1] >= WORTH_M and len(old) > 4:
-                yield _Pair(stretch, old, new[part], start in other)
-
-
-def _without_effort(motion: Motion, style: Style) -> Plan:
-    """What the same body would do in the same scene with the same grips."""
-    plan = motion.plan
-    draft = Draft(plan.source, plan.scene, plan.human, style)
-    draft.grips = plan.grips
-    return led(draft, Care())
-
-
-def _timing(pairs: list[_Pair]) -> tuple[float, float, float]:
-    """Time, weight and bound flow by least squares on the shares of the way."""
-
-    def off(values: Float[np.ndarray, "3"]) -> Float[np.ndarray, "rows"]:
-        rows = []
-        for pair in pairs:
-            shares = timed(_shares(pair.old), values[0], values[1])
-            rows.append(paused(shares, values[2], pair.stretch.pauses) - _shares(pair.new))
-        return np.concatenate(rows)
-
-    low, high = [-MOST, -MOST, -1e-9], [MOST, MOST, MOST]
-    found = least_squares(off, [0.0, 0.0, 0.05], bounds=(low, high), diff_step=1e-4)
-    time, weight, bound = (float(value) for value in found.x)
-    return time, weight, bound
-
-
-def _space(pairs: list[_Pair], weight: float) -> float | None:
-    """The effort of space by the mean of how much longer than straight ways are."""
-    if not pairs:
-        return None
-    wanted = np.mean([_detour(pair.new.translation) for pair in pairs])
-
-    def off(space: float) -> float:
-        made = []
-        for pair in pairs:
-            free = np.ones(len(pair.old))
-            made.append(_detour(shaped(pair.old.translation, space, weight, free)))
-        return float(np.mean(made) - wanted)
-
-    low, high = off(-MOST), off(1.0)
-    if low <= 0.0 or high >= 0.0:
-        return -MOST if low <= 0.0 else 1.0
-    return float(brentq(off, -MOST, 1.0, xtol=1e-3))
-
-
-def _shares(path: RigidTransform) -> Float[np.ndarray, "frames"]:
-    length = turned_way(path)
-    return np.asarray(length / length[-1])
-
-
-def _detour(spots: Float[np.ndarray, "frames 3"]) -> float:
-    """How much longer than straight a way is [1]."""
-    length = float(np.linalg.norm(np.diff(spots, axis=0), axis=1).sum())
-    return length / float(np.linalg.norm(spots[-1] - spots[0])) - 1.0
-
-
-def _beyond(path: RigidTransform) -> float:
-    """How far a way goes beyond its end, along the straight way [1, of that]."""
-    chord = path.translation[-1] - path.translation[0]
-    along = (path.translation - path.translation[0]) @ chord / float(chord @ chord)
-    return float(along.max() - 1.0)
-
-
-def _chord_m(path: RigidTransform) -> float:
-    return float(np.linalg.norm(path.translation[-1] - path.translation[0]))
-
-
 SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)
 """Shares of the effort that are tried [1]."""
 
@@ -567,11 +419,10 @@ DOUBLINGS = 0.5
 
 @dataclass(frozen=True)
 class EffortReport:
-    """What effort was asked for, performed, and measured in the performed motion."""
+    """What effort was asked for, and what of it was performed."""
 
     asked: Effort
     performed: Effort
-    measured: MeasuredEffort
     why: str = ""
     """What did not allow more."""
 
@@ -579,63 +430,8 @@ class EffortReport:
         """For people, in a line or two."""
         lines = [f"effort asked for: {self.asked}"]
         if self.why:
-            share = _share(self.performed, self.asked)
-            lines.append(
-                f"effort performed: {self.performed}, {share:.2f} of it, since with more {self.why}"
-            )
-        return "\n".join([*lines, f"effort measured: {self.measured}"])
-
-
-def regenerate_with_effort(
-    source: Source,
-    human: Human,
-    scene: Scene | None = None,
-    style: Style | None = None,
-    *,
-    effort: Effort,
-    duration_s: float | None = None,
-) -> tuple[Motion, Quality, EffortReport]:
-    """Perform with an effort, or with the largest share of it that passes every gate.
-
-    Args:
-        source: The recorded performance.
-        human: Who performs.
-        scene: Where; as it was recorded, unless stated.
-        style: How it is done without the effort; as it was recorded, unless stated.
-        effort: How it is to be done.
-        duration_s: How long it takes [s]; by the effort of time, unless stated.
-
-    Raises:
-        PlanError: It is impossible without any effort, too, or an effort has no meaning there.
-    """
-    style = style or own_style(source)
-    check_effort(source, style, effort)
-    found: list[tuple[Motion, Quality, float]] = []
-    reasons: list[str] = []
-    refused: PlanError | None = None
-    for share in SHARES:
-        part = effort.scaled(share)
-        try:
-            timed = paced(source, duration_s or _duration_s(source, part))
-            motion, quality = regenerate(timed, human, scene, with_effort(style, timed, part))
-        except PlanError as error:
-            refused = error
-            reasons.append(str(error))
-            continue
-        found.append((motion, quality, share))
-        if quality.passed:
-            break
-        gates = [gate for gate in quality.gates if not gate.passed]
-        reasons.append(
-            ", ".join(f"{g.name} is {g.value:.2f} {g.unit}, limit {g.limit:g}" for g in gates)
-        )
-    if not found:
-        assert refused is not None
-        raise refused
-    motion, quality, share = min(found, key=lambda made: (len(made[1].failed), -made[2]))
-    why = reasons[SHARES.index(share) - 1] if share < 1.0 else ""
-    report = EffortReport(effort, effort.scaled(share), measured_effort(motion, style), why)
-    return motion, quality, report
+            lines.append(f"effort performed: {self.performed}, since with more {self.why}")
+        return "\n".join(lines)
 
 
 def regenerate_in_manner(
@@ -645,27 +441,42 @@ def regenerate_in_manner(
     style: Style,
     *,
     effort: Effort | None,
-    duration_s: float | None,
+    duration_s: float | None = None,
 ) -> tuple[Motion, Quality, EffortReport | None]:
-    """Perform with an effort if one is stated, and in a certain time if that is.
+    """Perform in a certain time [s], with an effort or the largest share of it that is possible.
 
-    Args:
-        source: The recorded performance.
-        human: Who performs.
-        scene: Where.
-        style: How it is done without the effort.
-        effort: How it is to be done.
-        duration_s: How long it takes [s].
+    Without a duration it takes as long as recorded, or as long as the effort of time asks for.
 
     Raises:
-        PlanError: It is impossible; the message says what would help.
+        PlanError: It is impossible without any effort, too, or an effort has no meaning there.
     """
-    if effort:
-        return regenerate_with_effort(
-            source, human, scene, style, effort=effort, duration_s=duration_s
-        )
-    source = paced(source, duration_s) if duration_s else source
-    return *regenerate(source, human, scene, style), None
+    if effort is None:
+        source = paced(source, duration_s) if duration_s else source
+        return *regenerate(source, human, scene, style), None
+    check_effort(source, style, effort)
+    found: list[tuple[Motion, Quality, float]] = []
+    reasons: list[str] = []
+    refused: PlanError | None = None
+    for share in SHARES:
+        part = effort.scaled(share)
+        recorded_s = float(source.times[-1] - source.times[0])
+        try:
+            timed = paced(source, duration_s or recorded_s * 2.0 ** (-DOUBLINGS * part.time))
+            motion, quality = regenerate(timed, human, scene, with_effort(style, timed, part))
+        except PlanError as error:
+            refused = error
+            reasons.append(str(error))
+            continue
+        found.append((motion, quality, share))
+        if quality.passed:
+            break
+        reasons.append(failures(quality))
+    if not found:
+        assert refused is not None
+        raise refused
+    motion, quality, share = min(found, key=lambda made: (len(made[1].failed), -made[2]))
+    why = reasons[SHARES.index(share) - 1] if share < 1.0 else ""
+    return motion, quality, EffortReport(effort, effort.scaled(share), why)
 
 
 def check_effort(source: Source, style: Style, effort: Effort) -> None:
@@ -692,14 +503,3 @@ def check_effort(source: Source, style: Style, effort: Effort) -> None:
         raise PlanError(
             "style 'vel' goes straight, so that space has no effect; --style path or frame would do"
         )
-
-
-def _duration_s(source: Source, effort: Effort) -> float:
-    """How long it takes with an effort [s]."""
-    recorded_s = float(source.times[-1] - source.times[0])
-    return float(recorded_s * 2.0 ** (-DOUBLINGS * effort.time))
-
-
-def _share(performed: Effort, asked: Effort) -> float:
-    pairs = zip(performed.values.values(), asked.values.values(), strict=True)
-    return max((done / wanted for done, wanted in pairs if wanted), default=1.0)

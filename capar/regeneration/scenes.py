@@ -1,7 +1,7 @@
 """The scene of a motion: objects, floor and stance, and changes to it by file or by seed."""
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -187,26 +187,9 @@ def _riders(scene: Scene, name: str) -> list[str]:
     return [*fastened, *taken_with(scene, name)]
 
 
-@dataclass(frozen=True)
-class Draw:
-    """The ranges from which a scene is drawn."""
-
-    heights_m: tuple[float, float]
-    """Of the table [m]."""
-
-    sizes: tuple[float, float]
-    """Of what can be moved, of the recorded [1]."""
-
-    aside_m: float
-    """How far from its place a thing is drawn along each axis [m]."""
-
-
-USUAL = Draw((0.6, 1.1), (0.7, 1.4), 0.1)
-WIDE = Draw((0.5, 1.25), (0.6, 1.5), 0.3)
-"""Wide enough that not everything is in reach of every body."""
-
-DRAWS = {"usual": USUAL, "wide": WIDE}
-"""By the names under which they are asked for."""
+HEIGHTS_M, SIZES, ASIDE_M = (0.6, 1.1), (0.7, 1.4), 0.1
+"""Scenes are drawn with tables so high [m], objects of so many times their size [1], and so far
+from their places along each axis [m]."""
 
 ATTEMPTS = 200
 APART_M = 0.02
@@ -227,7 +210,7 @@ def read_scene(path: Path, scene: Scene) -> Scene:
         FileError: The file cannot be read, or says something else.
         UnknownNameError: It names an object that is not there.
     """
-    table = _table(path)
+    table = read_toml(path, {"stance", "object"})
     return _standing(path, _with_objects(path, table, scene), table.get("stance", {}), "[stance]")
 
 
@@ -238,11 +221,11 @@ def read_scenes(path: Path, scenes: Mapping[str, Scene]) -> dict[str, Scene]:
         FileError: The file cannot be read, or says something else.
         UnknownNameError: It names an object that is not there.
     """
-    table = _table(path)
+    table = read_toml(path, {"stance", "object"})
     stance = dict(table.get("stance", {}))
     own = {name: stance.pop(name) for name in scenes if name in stance}
     first = next(iter(scenes))
-    _check_keys(path, "[stance]", stance, STANCE_KEYS | set(scenes))
+    check_keys(path, "[stance]", stance, STANCE_KEYS | set(scenes))
     own[first] = {**stance, **own.get(first, {})}
     return {
         name: _standing(
@@ -252,12 +235,17 @@ def read_scenes(path: Path, scenes: Mapping[str, Scene]) -> dict[str, Scene]:
     }
 
 
-def _table(path: Path) -> dict[str, Any]:
+def read_toml(path: Path, keys: Set[str]) -> dict[str, Any]:
+    """The table of a TOML file that has some keys at most.
+
+    Raises:
+        FileError: It cannot be read, or has another key.
+    """
     try:
         table = tomllib.loads(path.read_text("utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise FileError(path, f"is no TOML: {error}.", "See `capar regenerate --help`.") from None
-    _check_keys(path, "the file", table, {"stance", "object"})
+    check_keys(path, "the file", table, keys)
     return table
 
 
@@ -269,7 +257,7 @@ def _with_objects(path: Path, table: dict[str, Any], scene: Scene) -> Scene:
 
 def _standing(path: Path, scene: Scene, stance: dict[str, Any], where: str) -> Scene:
     """The scene with the performer where a table says."""
-    _check_keys(path, where, stance, STANCE_KEYS)
+    check_keys(path, where, stance, STANCE_KEYS)
     x, y = _numbers(path, "stance.place", stance.get("place", scene.place), 2)
     heading = _number(path, "heading_deg", stance.get("heading_deg", np.degrees(scene.heading)))
     floor = _number(path, "floor_m", stance.get("floor_m", scene.floor_m))
@@ -278,7 +266,7 @@ def _standing(path: Path, scene: Scene, stance: dict[str, Any], where: str) -> S
     return replace(scene, place=(x, y), heading=turn, floor_m=floor, stays=stays)
 
 
-def drawn_scene(scene: Scene, rng: np.random.Generator, draw: Draw = USUAL) -> Scene:
+def drawn_scene(scene: Scene, rng: np.random.Generator) -> Scene:
     """A scene with other sizes and places, its first fixed thing as high as a table may be.
 
     What bears a door or a drawer is drawn with it, in size and place, and as much higher or lower;
@@ -286,9 +274,9 @@ def drawn_scene(scene: Scene, rng: np.random.Generator, draw: Draw = USUAL) -> S
     """
     for name in mobile(scene):
         if name not in scene.together:
-            scene = resized_with(scene, name, float(rng.uniform(*draw.sizes)))
+            scene = resized_with(scene, name, float(rng.uniform(*SIZES)))
     for name in bases(scene):
-        scene = _drawn_base(scene, name, rng, draw)
+        scene = _drawn_base(scene, name, rng)
     fixed = [
         name
         for name, thing in scene.things.items()
@@ -297,11 +285,11 @@ def drawn_scene(scene: Scene, rng: np.random.Generator, draw: Draw = USUAL) -> S
     if fixed:
         thing = scene.thing(fixed[0])
         top = thing.place[2] + float(thing.shape.bounds[1, 2])
-        scene = raised(scene, fixed[0], float(rng.uniform(*draw.heights_m)) - top)
+        scene = raised(scene, fixed[0], float(rng.uniform(*HEIGHTS_M)) - top)
     for _ in range(ATTEMPTS):
         found = scene
         for name in mobile(scene):
-            dx, dy = rng.uniform(-draw.aside_m, draw.aside_m, 2)
+            dx, dy = rng.uniform(-ASIDE_M, ASIDE_M, 2)
             if scene.support(name) in mobile(scene) or name in scene.together:
                 continue  # it goes along with what bears it, or with what is taken together
             beside = [o for n in taken_with(scene, name) for o in (n, *stack(scene, n))]
@@ -314,10 +302,10 @@ def drawn_scene(scene: Scene, rng: np.random.Generator, draw: Draw = USUAL) -> S
     return scene
 
 
-def _drawn_base(scene: Scene, name: str, rng: np.random.Generator, draw: Draw) -> Scene:
-    scene = resized_with(scene, name, float(rng.uniform(*draw.sizes)))
+def _drawn_base(scene: Scene, name: str, rng: np.random.Generator) -> Scene:
+    scene = resized_with(scene, name, float(rng.uniform(*SIZES)))
     thing = scene.thing(name)
-    dx, dy, dz = (float(value) for value in rng.uniform(-draw.aside_m, draw.aside_m, 3))
+    dx, dy, dz = (float(value) for value in rng.uniform(-ASIDE_M, ASIDE_M, 3))
     x, y, z = thing.place
     return moved_with(scene, name, (x + dx, y + dy, z + dz), thing.heading)
 
@@ -353,7 +341,7 @@ def _changed(path: Path, scene: Scene, name: str, row: Any) -> Scene:
         )  # fmt: skip
     if not isinstance(row, dict):
         raise FileError(path, f"object.{name} is no table.", f"Write [object.{name}].")
-    _check_keys(path, f"[object.{name}]", row, KEYS)
+    check_keys(path, f"[object.{name}]", row, KEYS)
     if "size" in row:
         factor = _number(path, "size", row["size"])
         if factor <= 0.0:
@@ -367,7 +355,12 @@ def _changed(path: Path, scene: Scene, name: str, row: Any) -> Scene:
     return moved_with(scene, name, (x, y, z), thing.heading + float(turn))
 
 
-def _check_keys(path: Path, where: str, row: dict[str, Any], known: set[str]) -> None:
+def check_keys(path: Path, where: str, row: Mapping[str, Any], known: Set[str]) -> None:
+    """A table of a file has known keys only.
+
+    Raises:
+        FileError: It has another one.
+    """
     for key in row:
         if key not in known:
             raise FileError(

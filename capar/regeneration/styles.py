@@ -212,58 +212,6 @@ def replayed(
     return np.asarray(after.origin + after.length_m * local @ after.axes.T)
 
 
-@dataclass(frozen=True, eq=False)
-class Replay:
-    """One reach replayed for one goal in both frames."""
-
-    goal: Float[np.ndarray, "3"]
-    by_hand: Float[np.ndarray, "frames 3"]
-    by_shoulder: Float[np.ndarray, "frames 3"]
-
-    def gaps(self, hand: Float[np.ndarray, "3"]) -> tuple[float, float]:
-        """How far each replay begins from where the hand is [m]."""
-        ways = self.by_hand, self.by_shoulder
-        first, second = (np.linalg.norm(way[0] - hand) for way in ways)
-        return float(first), float(second)
-
-    @property
-    def misses(self) -> tuple[float, float]:
-        """How far each ends from where the recorded hand was beside its object [m]."""
-        ways = self.by_hand, self.by_shoulder
-        first, second = (np.linalg.norm(way[-1] - self.goal) for way in ways)
-        return float(first), float(second)
-
-
-def replays(
-    path: Float[np.ndarray, "frames 3"],
-    shoulder: Float[np.ndarray, "3"],
-    goals: Float[np.ndarray, "goals 3"],
-    *,
-    hand: Float[np.ndarray, "3"] | None = None,
-) -> list[Replay]:
-    """A reach for new goals, as Fig. 2 of the paper plots it.
-
-    Args:
-        path: Of the hand, ending at the object [m].
-        shoulder: Where the shoulder is [m].
-        goals: Where the object is instead [m].
-        hand: Where the hand starts instead; as recorded unless stated [m].
-
-    Raises:
-        CoordinateError: Two points do not span a frame.
-    """
-    start = path[0] if hand is None else hand
-    by_hand, by_shoulder = frame_between(path[-1], path[0]), frame_between(path[-1], shoulder)
-    return [
-        Replay(
-            goal,
-            replayed(path, by_hand, frame_between(goal, start)),
-            replayed(path, by_shoulder, frame_between(goal, shoulder)),
-        )
-        for goal in goals
-    ]
-
-
 SHORT_M = 0.05
 """A shorter way from start to goal has no direction of its own [m]."""
 

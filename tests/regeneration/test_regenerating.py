@@ -16,7 +16,8 @@ from capar.regeneration import Motion, PlanError, Quality, Source, regenerate
 from capar.regeneration.body_frames import body_frames
 from capar.regeneration.direct_mapping import departures
 from capar.regeneration.motion import perform_plan
-from capar.regeneration.planning import plan
+from capar.regeneration.paths import Care
+from capar.regeneration.planning import led, reachable
 from capar.regeneration.quality import quality
 from capar.regeneration.scenes import raised, resized
 from capar.regeneration.sources import body_hand_frame
@@ -129,18 +130,18 @@ def test_out_of_reach_is_decided_before_anything_moves_with_what_would_help() ->
     source = _source("touch")
     scene = replace(source.scene, place=(-0.8, 0.0), stays=True)
     with pytest.raises(PlanError, match=r"misses by \d+ mm.*; standing \d\.\d\d m further ahead"):
-        plan(source, scene, source.human)
+        reachable(source, scene, source.human)
 
 
 def test_nobody_stands_inside_a_table() -> None:
     source = _source("touch")
     with pytest.raises(PlanError, match="inside 'table'; stand further back"):
-        plan(source, replace(source.scene, place=(0.3, 0.0), stays=True), source.human)
+        reachable(source, replace(source.scene, place=(0.3, 0.0), stays=True), source.human)
 
 
 def test_the_same_input_gives_the_same_motion() -> None:
     source = _source("touch")
-    made = plan(source, source.scene, source.human)
+    made = led(reachable(source, source.scene, source.human), Care())
     one, two = (perform_plan(made).postures for _ in range(2))
     assert one.tobytes() == two.tobytes()
 

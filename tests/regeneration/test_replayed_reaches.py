@@ -10,7 +10,6 @@ from capar.regeneration.styles import (
     CoordinateError,
     frame_between,
     replayed,
-    replays,
 )
 
 ASIDE = np.array([[0.1, 0.0, 0.0], [0.0, 0.12, 0.05], [-0.05, -0.1, 0.1], [0.08, 0.1, -0.1]])
@@ -44,31 +43,15 @@ def test_a_replay_enlarges_every_distance_by_the_same_factor(
     assert np.linalg.det(after.axes.T @ before.axes) == pytest.approx(1.0)
 
 
-def test_in_the_frame_of_object_and_hand_nothing_jumps_and_in_that_of_the_shoulder_it_does() -> (
-    None
-):
+def test_a_reach_begins_at_the_hand_in_its_frame_and_ends_at_the_goal_in_any() -> None:
     path, shoulder = _reach()
-    for each in replays(path, shoulder, path[-1] + ASIDE):
-        by_hand_m, by_shoulder_m = each.gaps(path[0])
-        assert by_hand_m < 1e-12
-        assert by_shoulder_m > 0.02
-        assert max(each.misses) < 1e-12
-
-
-def test_reaches_that_are_chained_in_the_frame_of_object_and_hand_leave_no_gap() -> None:
-    path, shoulder = _reach()
-    hand = path[0]
     for goal in path[-1] + ASIDE:
-        (made,) = replays(path, shoulder, goal[None], hand=hand)
-        np.testing.assert_allclose(made.by_hand[0], hand, atol=1e-12)
-        hand = made.by_hand[-1]
-
-
-def test_a_reach_to_where_it_went_is_the_same() -> None:
-    path, shoulder = _reach()
-    (made,) = replays(path, shoulder, path[-1:])
-    np.testing.assert_allclose(made.by_hand, path, atol=1e-12)
-    np.testing.assert_allclose(made.by_shoulder, path, atol=1e-12)
+        for base, begins in ((path[0], True), (shoulder, False)):
+            before, after = frame_between(path[-1], base), frame_between(goal, base)
+            made = replayed(path, before, after)
+            np.testing.assert_allclose(made[-1], goal, atol=1e-12)
+            assert (np.linalg.norm(made[0] - path[0]) < 0.02) == begins
+            np.testing.assert_allclose(replayed(path, before, before), path, atol=1e-12)
 
 
 def test_straight_above_each_other_takes_a_direction_aside() -> None:
