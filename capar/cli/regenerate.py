@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from capar.body.human import Human
     from capar.model.capture import Capture as CaptureData
     from capar.pipelines.instantiation import Asked
-    from capar.pipelines.preparation import Approach, Performed, Prepared, World
+    from capar.pipelines.preparation import Performed, Prepared, World
     from capar.pipelines.recordings import Recording
     from capar.pipelines.round_trips import JointTrip, Trip
     from capar.pipelines.spoken_requests import Performance
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from capar.regeneration.roles import Role
     from capar.regeneration.scenes import Scene
     from capar.regeneration.sources import Source
+    from capar.regeneration.stepping import Approach
     from capar.regeneration.styles import Kind
     from kb import Actionary
 
@@ -340,10 +341,11 @@ def _act(
     Raises:
         PlanError: It is out of reach, and no step helps.
     """
-    from capar.pipelines.preparation import approached, asserted
+    from capar.pipelines.preparation import asserted
     from capar.pipelines.round_trips import by_hand, observed_source
     from capar.regeneration.efforts import regenerate_in_manner
     from capar.regeneration.quality import Quality, contact_gate
+    from capar.regeneration.stepping import approached
     from capar.regeneration.styles import borrowed_style, own_style
 
     assertions = asserted(source) if contacts else None
@@ -490,9 +492,10 @@ def _asked(
 ) -> "tuple[Asked, World]":
     """What is asked for, and the world in which it is, as measured."""
     from capar.pipelines.instantiation import Asked
-    from capar.pipelines.preparation import FARTHEST_M, captured_world, measured_world
+    from capar.pipelines.preparation import captured_world, measured_world
     from capar.pipelines.round_trips import body
     from capar.regeneration.scenes import read_scene
+    from capar.regeneration.stepping import FARTHEST_M
 
     who = source.capture.agent.name if agent == SAME else agent
     kinds = words.agent_profile(who)["kind"] if who in words.agents() else ()
@@ -758,7 +761,6 @@ def _effort_answer(report: "EffortReport | None") -> dict[str, Any]:
         "effort": {
             "asked": report.asked.values,
             "performed": report.performed.values,
-            "measured": report.measured.values,
             "why": report.why,
         }
     }
