@@ -81,22 +81,6 @@ def test_inspect_prints_the_calibration_as_tables_and_as_json() -> None:
     assert "median" in tables
 
 
-@pytest.mark.parametrize("output", ["mine/of/capture.toml", "mine/of"])
-def test_the_folder_of_a_new_capture_is_made(output: str, tmp_path: Path) -> None:
-    path = samples.write_csv(tmp_path / "m.csv")
-    result = RUNNER.invoke(app, ["new-capture", str(path), "-o", str(tmp_path / output)])
-    assert result.exit_code == 0, result.output
-    assert (tmp_path / "mine" / "of" / "capture.toml").is_file()
-    assert len(read_capture(tmp_path / "mine" / "of").sensors) == 1
-
-
-def test_no_folder_is_made_for_motion_that_cannot_be_read(tmp_path: Path) -> None:
-    output = str(tmp_path / "mine" / "capture.toml")
-    result = RUNNER.invoke(app, ["new-capture", str(tmp_path / "none.csv"), "-o", output])
-    assert isinstance(result.exception, FileError)
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_long_name_is_whole_in_a_pipe(tmp_path: Path) -> None:
     name = "marker_on_the_second_knuckle_of_the_left_glove_of_the_first_performer"
     path = samples.write_csv(tmp_path / "m.csv")

@@ -2,7 +2,6 @@
 
 import json
 import os
-import shlex
 import signal
 import subprocess
 import sys
@@ -93,9 +92,3 @@ def test_a_wrong_address_or_place_is_an_error_and_leaves_nothing(tmp_path: Path)
     assert isinstance(result.exception, FileError)
     assert list(tmp_path.iterdir()) == []
     assert isinstance(RUNNER.invoke(app, ["simulate", "wii"]).exception, CaparError)
-
-
-def test_the_address_of_a_simulated_tracker_is_told_as_a_shell_takes_it() -> None:
-    result = RUNNER.invoke(app, ["simulate", "motionstar", "--sensors", "2", "--seconds", "0.1"])
-    address = result.stdout.strip()
-    assert shlex.split(result.stderr)[-4:] == ["capar", "record", address, "FOLDER"]

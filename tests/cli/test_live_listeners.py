@@ -7,10 +7,8 @@ from pathlib import Path
 
 import pytest
 from lsl_loopback import LOOPBACK
-from typer.testing import CliRunner
 
-from capar.cli import app
-from capar.model.errors import CaparError, DeviceError
+from capar.model.errors import DeviceError
 from capar.pipelines.live.event_socket import EventSocket
 
 DEMO = str(Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug")
@@ -95,20 +93,6 @@ def test_who_connects_late_is_told_what_came_before_and_all_are_told_the_end() -
 
 
 @pytest.mark.parametrize(
-    "origin", ["http://localhost:8000", "https://127.0.0.1", "http://[::1]:3000", None]
-)
-def test_programs_and_pages_of_this_computer_may_listen(origin: str | None) -> None:
-    client = pytest.importorskip("websockets.sync.client")
-    socket = EventSocket(0)
-    socket.send("one")
-    try:
-        with client.connect(socket.address, origin=origin) as listening:
-            assert listening.recv(timeout=5) == "one"
-    finally:
-        socket.close()
-
-
-@pytest.mark.parametrize(
     "origin",
     [
         "https://example.org",
@@ -153,10 +137,3 @@ def test_a_program_that_records_markers_receives_every_event(tmp_path: Path) -> 
     )
     printed = events(lines_of(observing))
     assert lines_of(listening) == ["Markers", *printed]
-
-
-@pytest.mark.parametrize("option", [("--websocket", "0"), ("--lsl-markers", "events")])
-def test_events_are_those_of_live_observation(option: tuple[str, str]) -> None:
-    result = CliRunner().invoke(app, ["observe", DEMO, *option])
-    assert isinstance(result.exception, CaparError)
-    assert "--live" in str(result.exception)

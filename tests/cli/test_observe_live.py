@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from capar.cli import app
-from capar.model.errors import CaparError, FileError
+from capar.model.errors import CaparError
 
 RUNNER = CliRunner()
 DEMO = str(Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug")
@@ -43,13 +43,3 @@ def test_what_cannot_be_observed_live_is_said_with_what_can(
     result = RUNNER.invoke(app, ["observe", *options])
     assert isinstance(result.exception, CaparError)
     assert message in str(result.exception)
-
-
-def test_a_calibration_file_that_is_none_is_refused_with_the_command_that_writes_one(
-    tmp_path: Path,
-) -> None:
-    path = tmp_path / "calibration.json"
-    path.write_text('{"step_s": 1}', encoding="utf-8")
-    result = RUNNER.invoke(app, ["observe", "--live", DEMO, "--calibration", str(path)])
-    assert isinstance(result.exception, FileError)
-    assert "capar inspect CAPTURE --calibration --json" in str(result.exception)

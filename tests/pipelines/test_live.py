@@ -15,7 +15,6 @@ from capar.model.observation import Segment
 from capar.pipelines.live.frames import replayed
 from capar.pipelines.live.ledgers import SegmentEvent, Status
 from capar.pipelines.live.observer import LiveObserver
-from capar_rules.engine import solver
 from extractors.calibration import calibrate
 from extractors.relations import places
 
@@ -184,19 +183,3 @@ def test_no_room_of_a_shape_is_sought_while_frames_come(monkeypatch: pytest.Monk
         observer.push([frame])
     _, result = observer.finish()
     assert result is not None
-
-
-def test_rules_are_read_before_the_first_frame_and_not_while_frames_come(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    capture = motions.slide_object(motions.WOMAN).capture
-    calibration = calibrate(capture)
-    solver._rule_base.cache_clear()
-    observer = LiveObserver(capture, calibration)
-
-    def refused(*_: object) -> None:
-        raise AssertionError("rules were read late")
-
-    monkeypatch.setattr(solver, "parse", refused)
-    events = [event for frame in replayed(capture) for event in observer.push([frame])]
-    assert settled(tuple(events))

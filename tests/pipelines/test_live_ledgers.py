@@ -12,9 +12,8 @@ from hypothesis import strategies as st
 from live_runs import rig_of
 from measured_bodies import pick_and_place
 
-from capar.model.errors import CaparError, CaptureError, DeviceError, RuleError
+from capar.model.errors import CaptureError, DeviceError, RuleError
 from capar.model.facts import (
-    Displaced,
     Gap,
     Leans,
     Moving,
@@ -23,7 +22,6 @@ from capar.model.facts import (
     Place,
     Resting,
     Reverses,
-    Swings,
     Touching,
 )
 from capar.pipelines.live.frames import (
@@ -35,12 +33,11 @@ from capar.pipelines.live.frames import (
     replayed,
 )
 from capar.pipelines.live.ledgers import FactLedger, RuleMemory
-from capar.pipelines.live.observer import FirstMotion, LiveHorizons
+from capar.pipelines.live.observer import FirstMotion
 from capar.pipelines.live.rule_process import RuleProcess, inferred
 from capar.pipelines.live.undecided import (
     Handling,
     awaited,
-    decided_at,
     nameless,
     out_of_sight,
     undecided,
@@ -48,7 +45,7 @@ from capar.pipelines.live.undecided import (
 from capar_rules.engine.profiles import profile
 from extractors.calibration import calibrate
 from extractors.devices.tracker import Description, Frame
-from extractors.measure import Arriving, measure
+from extractors.measure import measure
 from extractors.relations.places import summed
 
 FRAMES = 400
@@ -113,14 +110,6 @@ def test_a_motion_whose_end_is_told_sooner_than_before_is_settled_once_and_not_l
     assert done == [Moving("box", 10, 54)]
 
 
-def test_the_beginning_of_what_goes_on_is_known() -> None:
-    ledger = FactLedger()
-    assert ledger.begin_of((Moving,)) is None
-    ledger.settle(ledger.stitched([Moving("box", 10, 90), Touching("hand", "box", 5, 90)], 0), 50)
-    assert ledger.begin_of((Moving,)) == 10
-    assert ledger.begin_of((Moving, Touching)) == 5
-
-
 def _cut(each: Touching, begin: int, now: int) -> Touching:
     return replace(each, first=max(each.first, begin) - begin, last=min(each.last, now) - begin)
 
@@ -170,13 +159,6 @@ def test_a_frame_of_other_bodies_or_of_an_earlier_time_is_refused() -> None:
         buffer.push(frame)
     with pytest.raises(CaptureError, match="the rig has 3 bodies"):
         buffer.push(Poses(1.0, np.zeros((2, 3)), np.zeros((2, 4))))
-
-
-def test_horizons_that_cannot_settle_anything_are_refused() -> None:
-    with pytest.raises(CaparError, match="cannot settle"):
-        LiveHorizons(window_s=1.0)
-    with pytest.raises(CaparError, match="longer than 0 s"):
-        LiveHorizons(stride_s=0.0)
 
 
 def test_a_lead_in_of_half_a_second_is_refused() -> None:
@@ -229,103 +211,6 @@ def test_who_holds_a_thing_that_has_not_moved_and_touches_another_is_undecided_f
     assert told(Moving("cup", 20, 60)) == {"hand": 95}
     later = (replace(cup, last=400), replace(table, last=400))
     assert told(last=400, touching=later) == {}
-
-
-def test_who_joins_in_holding_a_thing_is_undecided_until_the_other_lets_go() -> None:
-    own, other = Touching("left", "cup", 100, 150), Touching("right", "cup", 20, 150)
-
-    def told(*touching: Touching) -> dict[str, int]:
-        return undecided(Handling(touching, (), {"cup"}, last=150, margin=15, longest=200))
-
-    assert told(own, other) == {"left": 100}
-    assert told(own, replace(other, last=120)) == {}
-
-
-def test_what_lies_on_a_table_or_is_in_the_same_limb_s_hold_is_taken_over_from_nobody() -> None:
-    own, other = Touching("left", "cup", 100, 150), Touching("right", "cup", 20, 150)
-    table = Touching("cup", "table", 0, 130)
-
-    def told(laid: tuple[Touching, ...], limbs: dict[str, object]) -> dict[str, int]:
-        handling = Handling((own, other), (), {"cup"}, last=150, margin=15, longest=200)
-        return undecided(replace(handling, laid=laid, limbs=limbs))
-
-    assert told((), {"left": "left arm", "right": "right arm"}) == {"left": 100}
-    assert told((table,), {}) == {}
-    assert told((replace(table, last=110),), {}) == {"left": 100}
-    assert told((), {"left": "arm", "right": "arm"}) == {}
-
-
-def test_what_is_met_as_fast_as_by_a_blow_is_undecided_until_it_moves_or_for_a_while() -> None:
-    own = Touching("hand", "cup", 100, 150)
-
-    def told(*moving: Moving, last: int = 150) -> tuple[dict[str, int], ...]:
-        handling = Handling(
-            (replace(own, last=last),),
-            moving,
-            {"cup"},
-            last=last,
-            margin=15,
-            longest=200,
-            fast={("hand", "cup", 100)},
-        )
-        return undecided(handling), nameless(handling), awaited(handling)
-
-    assert told() == ({"hand": 100}, {"hand": 100}, {"cup": 100})
-    assert told(Moving("cup", 140, 150)) == ({}, {}, {})
-    assert told(last=301) == ({}, {}, {})
-
-
-def test_what_is_swung_or_may_touch_on_is_undecided_since_it_was_last_seen_to() -> None:
-    own = Touching("hand", "whisk", 100, 400)
-    handling = Handling((own,), (), {"whisk"}, last=400, margin=15, longest=200, stroke=90)
-    swung = replace(handling, swings=[Swings("whisk", 200, 330)])
-    assert undecided(swung) == {"hand": 330}
-    assert undecided(replace(swung, last=421)) == {}
-    near = replace(handling, lingering={("bowl", "whisk"): 390, ("lid", "pot"): 380})
-    assert undecided(near) == {"hand": 390}
-    assert near.sure == 379
-
-
-def test_what_has_just_begun_to_move_is_undecided_since_it_is_touched() -> None:
-    own = Touching("hand", "cup", 100, 400)
-    moves = [Moving("cup", 390, 400)]
-    handling = Handling((own,), moves, {"cup"}, last=400, margin=15, longest=200, fresh=20)
-    assert undecided(handling) == {"hand": 100}
-    assert nameless(handling) == {"hand": 100}
-    assert list(decided_at(handling)) == [411]
-    assert undecided(replace(handling, moving=[Moving("cup", 370, 400)])) == {}
-
-
-def test_what_moves_again_is_undecided_since_it_set_off_until_it_goes_on() -> None:
-    own = Touching("hand", "cup", 100, 400)
-    moves = [Moving("cup", 150, 200), Moving("cup", 390, 400)]
-    ways = [Displaced("cup", 140, 210), Displaced("cup", 365, 400), Displaced("box", 380, 400)]
-    handling = Handling(
-        (own,), moves, {"cup"}, last=400, margin=15, longest=200, fresh=20, displaced=ways
-    )
-    assert undecided(handling) == nameless(handling) == {"hand": 365}
-    assert undecided(replace(handling, displaced=ways[:1])) == {"hand": 390}
-    later = replace(handling, last=410)
-    assert undecided(later) == nameless(later) == {}
-
-
-def test_what_has_just_come_to_rest_is_undecided_until_its_place_is_told() -> None:
-    own = Touching("hand", "cup", 100, 392)
-    moves = [Moving("cup", 150, 389)]
-    landed = {"cup": Arriving(390, 34)}
-    handling = Handling(
-        (own,), moves, {"cup"}, last=400, margin=15, longest=200, fresh=20, arriving=landed
-    )
-    assert undecided(handling) == {"hand": 390}
-    assert nameless(handling) == {}
-    for laid, open_since in ((389, {}), (375, {"hand": 390}), (350, {})):
-        on_table = replace(handling, laid=(Touching("cup", "table", laid, 400),))
-        assert nameless(on_table) == open_since
-    assert handling.sure == 374
-    assert 434 in decided_at(handling)
-    let_go = replace(handling, touching=(replace(own, last=300),))
-    assert undecided(let_go) == {}
-    assert undecided(replace(handling, arriving={})) == {}
 
 
 def test_what_has_just_tipped_is_not_announced_while_it_leans_and_for_a_while() -> None:

@@ -157,17 +157,6 @@ def test_wrong_addresses_are_refused_and_counted_as_lost() -> None:
     assert flock.counts.lost_records > 5
 
 
-def test_garbled_bytes_end_no_session() -> None:
-    faults = Faults(garbled_share=0.005, seed=2)
-    with (
-        FlockSimulator(SmoothMotion(3), FlockRig(quiet_s=QUIET_S), faults) as simulator,
-        tracker(simulator, "birds=3&rate=60") as flock,
-    ):
-        tracked.take(flock, 60)
-    assert flock.counts.lost_records + flock.counts.dropped_bytes > 0
-    assert flock.counts.reconnections == 0
-
-
 @pytest.mark.parametrize("mode", ["stream", "point"])
 def test_a_pulled_plug_is_survived_and_told(mode: str) -> None:
     log: list[Sent] = []
@@ -205,17 +194,6 @@ def test_slow_answers_to_polls_lower_the_rate_and_lose_nothing() -> None:
         assert each.wrong == 0
 
 
-def test_time_stamps_are_as_far_apart_as_the_cycles() -> None:
-    with (
-        FlockSimulator(SmoothMotion(12), FlockRig(quiet_s=QUIET_S)) as simulator,
-        tracker(simulator, "birds=12&rate=51.65") as flock,
-    ):
-        frames = tracked.take(flock, 40)
-    steps = np.diff([each.host_s for each in frames])
-    assert np.median(steps) == pytest.approx(1.0 / 51.65, rel=0.2)
-    assert (steps > 0.0).all()
-
-
 def test_with_the_true_pauses_the_flock_is_configured_and_without_them_it_is_not() -> None:
     with FlockSimulator(SmoothMotion(2)) as simulator:
         with FlockTracker(parse_address(f"flock:{simulator.place}?birds=2&rate=60")) as flock:
@@ -239,11 +217,6 @@ def test_an_error_of_the_device_is_told_in_words() -> None:
         pytest.raises(DeviceError, match=r"error 29: the transmitter is not active"),
     ):
         tracker(simulator, "birds=1").open()
-
-
-def test_a_port_that_is_not_there_is_an_error_with_its_remedy() -> None:
-    with pytest.raises(DeviceError, match=r"cannot open /dev/no_such_port.*plugged in"):
-        FlockTracker(parse_address("flock:/dev/no_such_port")).open()
 
 
 def test_a_unit_that_does_not_answer_is_an_error_with_its_remedy() -> None:
@@ -292,14 +265,3 @@ def test_exactly_the_rates_that_fit_are_taken(form: str, birds: int, erc: bool) 
 def test_a_wrong_option_is_told(options: str, said: str) -> None:
     with pytest.raises(Exception, match=said):
         flock_settings(parse_address(f"flock:/dev/x?{options}"))
-
-
-def test_frames_end_when_the_tracker_is_closed() -> None:
-    with FlockSimulator(SmoothMotion(1), FlockRig(quiet_s=QUIET_S)) as simulator:
-        flock = tracker(simulator, "birds=1&rate=60")
-        flock.open()
-        start = time.monotonic()
-        for index, _ in enumerate(flock.frames()):
-            if index == 10:
-                flock.close()
-    assert time.monotonic() - start < 2.0

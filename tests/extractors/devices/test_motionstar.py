@@ -36,15 +36,6 @@ def test_every_format_arrives_whole_at_the_highest_rate(form: str, transport: st
         assert each.accepted == each.sent
 
 
-def test_a_server_that_sends_seldom_is_waited_for() -> None:
-    with (
-        MotionStarSimulator(SmoothMotion(2)) as simulator,
-        tracker(simulator, "birds=2&rate=1.25") as motionstar,
-    ):
-        assert len(tracked.take(motionstar, 3)) == 3
-    assert motionstar.events == []
-
-
 def test_lost_packets_are_counted_and_the_others_kept() -> None:
     log: list[SentPacket] = []
     with (
@@ -112,11 +103,6 @@ def test_an_error_of_the_server_is_told_in_words() -> None:
         pytest.raises(DeviceError, match=r"extended-range transmitter is not attached"),
     ):
         tracker(simulator, "birds=1").open()
-
-
-def test_a_server_that_is_not_there_is_an_error_with_its_remedy() -> None:
-    with pytest.raises(DeviceError, match=r"cannot reach 127.0.0.1:9 .*Is the server on"):
-        MotionStarTracker(parse_address("motionstar:127.0.0.1:9")).open()
 
 
 @pytest.mark.parametrize("place", ["host:", "host:port", ":6000", "host:70000"])

@@ -104,12 +104,6 @@ def test_a_kill_at_any_moment_loses_no_frame_older_than_a_fifth_of_a_second() ->
     assert all(held > 0 for _, held in done)
 
 
-def test_a_recording_is_never_overwritten(tmp_path: Path) -> None:
-    recorded(tmp_path / "a.live", frames(2))
-    with pytest.raises(FileError, match="exists already"):
-        RecordingWriter(tmp_path / "a.live", DESCRIPTION, "flock:/dev/x")
-
-
 def test_what_is_no_recording_is_told(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("t_s,x\n")
     with pytest.raises(FileError, match="no recording of a live tracker"):
@@ -125,16 +119,6 @@ def test_the_times_of_a_bundle_are_free_of_the_delays_on_the_way(
     made = frames(300, device=device, cycles=cycles)
     got = read_live_recording(recorded(tmp_path / "a.live", made))
     np.testing.assert_allclose(np.diff(frame_times(got)), 0.01, atol=2e-5)
-
-
-@pytest.mark.parametrize(("count", "straight"), [(19, False), (20, True)])
-def test_twenty_frames_of_a_connection_lie_on_a_line_of_time_and_fewer_as_they_arrived(
-    count: int, straight: bool, tmp_path: Path
-) -> None:
-    got = read_live_recording(recorded(tmp_path / "a.live", frames(count)))
-    times = got.host_s - got.host_s[0]
-    assert np.allclose(np.diff(frame_times(got), 2), 0.0, atol=1e-9) == straight
-    assert np.array_equal(frame_times(got), times) == (not straight)
 
 
 def test_a_bundle_reads_as_the_capture_that_was_recorded(tmp_path: Path) -> None:

@@ -53,12 +53,6 @@ def test_a_flight_has_the_acceleration_that_it_was_made_with(
     assert flight.curved
 
 
-def test_a_straight_fall_is_not_curved() -> None:
-    down = np.array([0.0, 0.0, -9.81])
-    (flight,) = flown(thing(tossed(100.0, down, np.zeros(3), 0.0005), 100.0))
-    assert not flight.curved
-
-
 def test_who_goes_along_holds_it() -> None:
     path = tossed(100.0, np.array([0.0, 0.0, -9.81]), np.array([1.0, 0.0, 0.0]), 0.0005)
     beside = path + np.array([0.05, 0.05, 0.0])

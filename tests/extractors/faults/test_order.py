@@ -60,14 +60,6 @@ def test_bodies_that_turn_each_for_itself_show_no_order(seed: int, declared: str
     assert told({"a": wandering(), "b": wandering()}, declared) == []
 
 
-def test_the_angle_between_quaternions_is_the_same_in_any_order() -> None:
-    """Why speeds of turning and rests show nothing."""
-    pairs = Rotation.random(50, random_state=1).as_quat().reshape(25, 2, 4)
-    dots = np.einsum("pi,pi->p", pairs[:, 0], pairs[:, 1])
-    other = np.roll(pairs, 1, axis=2)
-    assert np.allclose(dots, np.einsum("pi,pi->p", other[:, 0], other[:, 1]))
-
-
 @pytest.mark.parametrize("order", ["xyzw", "wxyz"])
 def test_a_bundle_with_the_wrong_order_is_told_what_to_state(tmp_path: Path, order: str) -> None:
     demo = read_capture(ROOT / "capar/demo/drink_from_mug")

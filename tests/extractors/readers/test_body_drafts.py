@@ -146,19 +146,6 @@ def test_words_tell_the_place_of_markers_of_no_convention(name: str, place: str)
     assert body_names([name])[name].place == place
 
 
-def test_words_that_may_mean_other_things_are_of_a_body_only_beside_one() -> None:
-    assert not body_names(["shelf_back", "middle", "ring", "box_arm"])
-
-
-@pytest.mark.skipif(not DATA.exists(), reason=f"no recordings at {DATA}")
-def test_left_and_right_markers_of_one_hand_are_no_two_hands(tmp_path: Path) -> None:
-    source = DATA / "hand_embodiment_pillow" / "recording.tsv"
-    _, capture = drafted(source, tmp_path / "drafted")
-    (hand,) = capture.sensors
-    assert (hand.name, hand.side) == ("right_hand", "right")
-    assert [each.name for each in capture.objects] == ["pillow"]
-
-
 @recorded
 @pytest.mark.parametrize("file", SENSORS)
 def test_a_recorded_file_is_drafted_as_a_person_of_a_persons_size(

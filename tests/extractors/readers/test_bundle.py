@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 
 from capar.model import geometry
-from capar.model.capture import Capture, Role, ShapeSource, Source
+from capar.model.capture import Capture, Role, ShapeSource
 from capar.model.errors import CaparError, CaptureError, FileError, UnknownNameError
-from extractors.readers.bundle.bodies import to_world
 from extractors.readers.bundle.capture_toml import frame_times, read_capture, takes
-from extractors.readers.recording import Recording
 
 BASE = """name = "trial"
 unit = "m"
@@ -89,19 +87,6 @@ def test_a_wrong_name_is_told_with_its_line_and_the_names_there_are(
         assert known in message
 
 
-def test_an_unknown_key_is_told_with_its_line(tmp_path: Path) -> None:
-    text = BASE + "colour = 3\n"
-    with pytest.raises(UnknownNameError, match=f"capture.toml:{line_of(text, 'colour')}.*colour"):
-        read_capture(bundle(tmp_path, text))
-
-
-@pytest.mark.parametrize("key", ["unit", "up"])
-def test_what_no_file_states_must_be_stated(key: str, tmp_path: Path) -> None:
-    text = "\n".join(each for each in BASE.splitlines() if not each.startswith(f"{key} ="))
-    with pytest.raises(FileError, match=f"no file states its {key}"):
-        read_capture(bundle(tmp_path, text))
-
-
 @pytest.mark.parametrize(("kind", "stated", "likely"), [("tsv", "m", "mm"), ("csv", "mm", "m")])
 def test_a_unit_wrong_by_far_is_told_with_the_likely_one(
     kind: str, stated: str, likely: str, tmp_path: Path
@@ -153,22 +138,6 @@ def test_a_left_handed_world_becomes_a_right_handed_one(tmp_path: Path) -> None:
         there = right.sensor("right_hand").stream.pose(frame).as_matrix()
         assert np.allclose(here[:3, :3], mirror @ there[:3, :3] @ mirror, atol=1e-9)
         assert np.allclose(here[:3, 3], mirror @ there[:3, 3], atol=1e-9)
-
-
-def test_markers_of_a_left_handed_world_in_millimetres_are_mirrored_and_in_metres() -> None:
-    points = np.random.default_rng(0).uniform(-2000.0, 2000.0, (5, 3))
-    recording = Recording(
-        Source("a.trc", "trc", ""), markers={"wrist": points}, marker_times=np.arange(5.0)
-    )
-    world = to_world(recording, unit_m=0.001, up="z", left_handed=True)
-    np.testing.assert_allclose(world.markers["wrist"], 0.001 * points * [-1.0, 1.0, 1.0])
-
-
-def test_y_up_is_turned_to_z_up(tmp_path: Path) -> None:
-    capture = read_capture(bundle(tmp_path, BASE.replace('up = "z"', 'up = "y"')))
-    places = capture.sensor("right_hand").stream.positions
-    assert np.allclose(places[:, 2], samples.PLACES[:, 1])
-    assert np.allclose(places[:, 1], -samples.PLACES[:, 2])
 
 
 def test_a_support_stands_under_what_rests_on_it_and_says_so(tmp_path: Path) -> None:
@@ -275,12 +244,3 @@ def test_a_capture_may_say_itself_when_bodies_touch(tmp_path: Path) -> None:
     capture = read_capture(bundle(tmp_path, text))
     assert capture.contact_tolerance_m == 0.02
     assert (capture.contact_dropout_s, capture.contact_minimum_s) == (0.0, 0.01)
-
-
-@pytest.mark.parametrize("wrong", ["minimum_s = 50", "dropout_s = -0.1", "dropout_ms = 3"])
-def test_what_it_says_wrongly_of_contact_is_told_with_its_line(wrong: str, tmp_path: Path) -> None:
-    text = f"{BASE}[contact]\n{wrong}\n"
-    with pytest.raises(
-        CaparError, match=f"capture.toml:{line_of(text, wrong)}.*{wrong.split(maxsplit=1)[0]}"
-    ):
-        read_capture(bundle(tmp_path, text))

@@ -9,7 +9,6 @@ import trimesh
 
 from capar.model.errors import CaptureError, FileError, UnknownNameError
 from extractors.readers.bundle.capture_toml import files_of, read_capture
-from extractors.readers.bundle.shapes import open_edges
 from extractors.readers.registry import read_recording
 
 TRIAL = """unit = "m"
@@ -45,25 +44,12 @@ def test_a_mesh_with_a_hole_is_told_with_its_body_and_its_open_edges(tmp_path: P
     assert said == {"mesh-not-closed": message}
 
 
-def test_a_closed_surface_has_no_open_edge_though_every_triangle_has_its_own_corners() -> None:
-    ball = trimesh.creation.icosphere(subdivisions=2)
-    corners = np.array(ball.vertices)[np.array(ball.faces)].reshape(-1, 3)
-    faces = np.arange(len(corners)).reshape(-1, 3)
-    assert open_edges(corners, faces) == 0
-    assert open_edges(corners, faces[1:]) == 3
-
-
 @pytest.mark.parametrize(("kind", "near"), [("hnd", "hand"), ("fot", "foot"), ("Head", "head")])
 def test_an_end_effector_that_is_almost_a_known_one_gets_a_notice(
     kind: str, near: str, tmp_path: Path
 ) -> None:
     said = notices(tmp_path, TRIAL.replace('"hand"\nbody', f'"{kind}"\nbody'))
     assert f"did you mean '{near}'?" in said["end-effector-unknown"]
-
-
-@pytest.mark.parametrize("kind", ["knee", "elbow", "forearm", "tail", "foot"])
-def test_an_end_effector_of_any_other_kind_is_taken_as_it_is(kind: str, tmp_path: Path) -> None:
-    assert notices(tmp_path, TRIAL.replace('"hand"\nbody', f'"{kind}"\nbody')) == {}
 
 
 @pytest.mark.parametrize(("rate_hz", "doubtful"), [(500, True), (5, True), (100, False)])

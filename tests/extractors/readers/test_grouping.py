@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from capar.model.capture import Source
-from capar.model.errors import CaparError
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.drafting.draft import draft
-from extractors.readers.names import limbs, part_of
+from extractors.readers.names import part_of
 from extractors.readers.recording import Recording, track
 
 PALM = """name = "trial"
@@ -86,17 +85,6 @@ def test_parts_are_told_apart_on_demand(tmp_path: Path) -> None:
     assert not any(each.code == "sensors-grouped" for each in capture.notices)
 
 
-def test_parts_of_either_side_are_not_one_hand(tmp_path: Path) -> None:
-    capture = read_capture(bundle(tmp_path, PALM + INDEX.replace("right", "left")))
-    assert len(capture.acting) == 2
-
-
-def test_another_word_for_parts_is_refused_with_those_there_are(tmp_path: Path) -> None:
-    text = PALM.replace('up = "z"', 'up = "z"\nparts = "apart_"')
-    with pytest.raises(CaparError, match=r"capture\.toml:\d+.*parts.*together"):
-        read_capture(bundle(tmp_path, text))
-
-
 @pytest.mark.parametrize(
     ("name", "limb"),
     [
@@ -116,12 +104,6 @@ def test_a_palm_stands_before_fingers_and_a_heel_before_toes() -> None:
         ranks = [each[1] for each in found if each]
         assert ranks == sorted(set(ranks))
         assert len(ranks) == len(found)
-
-
-def test_words_that_mean_other_things_are_fingers_only_beside_a_hand() -> None:
-    assert limbs(["left_ring", "mug"]) == {}
-    assert limbs(["left_ring", "left_palm"]) == {"left_ring": "hand", "left_palm": "hand"}
-    assert limbs(["left_ring", "right_palm"]) == {"right_palm": "hand"}
 
 
 def test_a_draft_takes_heels_toes_and_fingers_for_sensors_and_says_what_it_does_with_them() -> None:

@@ -86,13 +86,6 @@ def test_a_support_stands_under_the_objects_that_rest_on_it(
     assert "3 objects" in table.assumed
 
 
-def test_a_support_may_bear_below_its_highest_point_and_late(tmp_path: Path) -> None:
-    text = TEXT.replace("at_s = 0.0", "at_s = -0.05\nsurface_m = -0.01\nof = 'lowest'")
-    table = read_capture(bundle(tmp_path, text)).tag_object("table")
-    assert table.stream.positions[0, 2] - 0.01 == pytest.approx(0.70)
-    assert "at rest at 0.14 s" in table.assumed
-
-
 @pytest.mark.parametrize(
     ("old", "new", "error", "words"),
     [

@@ -5,7 +5,7 @@ from pathlib import Path
 import motion_files as samples
 import pytest
 
-from capar.model.errors import CaparError, CaptureError, FileError
+from capar.model.errors import FileError
 from extractors.readers.bundle.capture_toml import find_place, read_capture
 
 TRIAL = """name = "trial"
@@ -61,22 +61,6 @@ def test_what_is_wrong_with_a_name_or_rate_is_told_with_its_line(
     with pytest.raises(FileError) as caught:
         read_capture(bundle(tmp_path, text))
     assert f"capture.toml:{line}: {told}" in str(caught.value)
-
-
-def test_a_name_that_rules_cannot_bear_is_told_with_one_that_they_can(tmp_path: Path) -> None:
-    text = TRIAL.replace('name = "right_hand"', 'name = "Right Hand!"')
-    with pytest.raises(CaparError, match=r"Like right_hand\.$"):
-        read_capture(bundle(tmp_path, text))
-
-
-def test_names_that_clash_only_once_bodies_are_listed_are_told_with_the_file(
-    tmp_path: Path,
-) -> None:
-    text = f'{TRIAL}[[sensors_from]]\nfile = "motion"\nbodies = ["hand"]\n'
-    clash = text.replace('name = "right_hand"', 'name = "hand"')
-    assert len(read_capture(bundle(tmp_path, text)).sensors) == 2
-    with pytest.raises(CaptureError, match=r"capture\.toml: two sensors are called 'hand'"):
-        read_capture(bundle(tmp_path, clash))
 
 
 @pytest.mark.parametrize("place", [".", "capture.toml", "../pour", "../pour/capture.toml"])

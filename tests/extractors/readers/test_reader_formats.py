@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from capar.model import geometry
-from capar.model.errors import CaparError, FileError, UnknownNameError
+from capar.model.errors import CaparError, FileError
 from extractors.readers.registry import READERS, read_recording
 
 KINDS = sorted(samples.WRITERS)
@@ -88,11 +88,6 @@ def test_a_path_without_a_file_of_motion_is_refused(place: str, tmp_path: Path) 
     (tmp_path / "empty.csv").touch()
     with pytest.raises(FileError):
         read_recording(tmp_path / place)
-
-
-def test_an_option_that_a_format_does_not_know_is_named(tmp_path: Path) -> None:
-    with pytest.raises(UnknownNameError, match="colums"):
-        read_recording(samples.write_csv(tmp_path / "m.csv"), options={"colums": {}})
 
 
 def test_missing_points_are_lost_frames(tmp_path: Path) -> None:

@@ -9,7 +9,6 @@ from typer.testing import CliRunner
 
 from capar.cli import app
 from capar.model.capture import Source, recorded_at
-from capar.model.errors import CaparError
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.recording import iso_of_stamp, iso_time
 from extractors.readers.registry import read_recording
@@ -105,20 +104,3 @@ def test_the_stated_date_is_shown_stored_and_asked_for(
         assert str(row[0].value).endswith(f"#{datatype}")
     checked = CliRunner().invoke(app, ["check", "--actionary", str(place)])
     assert checked.exit_code == 0, checked.output
-
-
-def test_without_a_date_none_is_made_up(tmp_path: Path) -> None:
-    assert recorded_at(read_capture(DEMO).sources) == ""
-    shown = CliRunner().invoke(app, ["inspect", str(DEMO)])
-    assert "no date of recording" in " ".join(shown.output.split())
-
-
-def test_what_is_no_date_is_refused_with_its_line(tmp_path: Path) -> None:
-    with pytest.raises(CaparError, match=r"capture.toml:1: recorded = .last summer. is not"):
-        read_capture(bundle(tmp_path, 'recorded = "last summer"'))
-
-
-def test_recordings_of_others_have_the_dates_that_their_files_carry() -> None:
-    folder = samples.recordings_folder()
-    pillow = read_recording(folder / "hand_embodiment_pillow" / "recording.tsv")
-    assert pillow.source.recorded_at == "2021-08-26T15:19:24.317"
