@@ -558,11 +558,7 @@ class FlockTracker(LiveTracker):
                 port.line.write(bytes([EVERY[settings.every], STREAM]))
 
     def _configure(self) -> None:
-        """Set up every unit, and have the master find the others, again if some did not hear it.
-
-        Raises:
-            DeviceError: Units are missing, or report an error, each time.
-        """
+        """Set up every unit, and have the master find the others, again if some did not hear it."""
         settings, master = self._settings, self._ports[0]
         hemisphere = bytes([HEMISPHERE]) + HEMISPHERES[settings.hemisphere]
         for index, address in enumerate(settings.addresses):

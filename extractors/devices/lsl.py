@@ -104,11 +104,7 @@ class LslTracker(LiveTracker):
             raise DeviceLostError(f"{self._address.text}: {error}") from None
 
     def _layout(self, info: Any) -> tuple[tuple[str, ...], np.ndarray]:
-        """The sensors' names and, for each, the channels of its seven numbers.
-
-        Raises:
-            DeviceError: There is no sensor with a position and an orientation in metres.
-        """
+        """The sensors' names and, for each, the channels of its seven numbers."""
         columns: dict[str, dict[str, int]] = {}
         channel = info.desc().child("channels").child("channel")
         for index in range(info.channel_count()):

@@ -343,11 +343,7 @@ class MotionStarTracker(LiveTracker):
         self._ask(Kind.RUN_CONTINUOUS)
 
     def _take_birds(self, status: SystemStatus) -> None:
-        """The birds that are there, as many as the address says.
-
-        Raises:
-            DeviceError: There are others, or the server reports an error.
-        """
+        """The birds that are there, as many as the address says."""
         if status.error:
             raise self._address.error(error_text(status.error))
         if len(status.birds) != self._count:
@@ -373,11 +369,7 @@ class MotionStarTracker(LiveTracker):
         self._ask(Kind.SEND_SETUP, bird, body=wanted.encode())
 
     def _ask(self, kind: Kind, bird: int = 0, *, body: bytes = b"", needed: bool = True) -> Packet:
-        """The response to a command; data before it are dropped, those after it kept.
-
-        Raises:
-            DeviceError: None comes, though it is needed, or the server refuses the command.
-        """
+        """The response to a command; data before it are dropped, those after it kept."""
         for _ in range(ATTEMPTS if needed else 1):
             self._sequence = (self._sequence + 1) % SEQUENCES
             self._line.write(Packet(kind, self._sequence, bird, body).encode())
@@ -396,11 +388,7 @@ class MotionStarTracker(LiveTracker):
         raise DeviceLostError(f"{self._address.text}: no response to {kind.name}")
 
     def _packets(self, timeout_s: float) -> list[Packet]:
-        """The packets that come within a wait.
-
-        Raises:
-            DeviceLostError: A stream's bytes are no packets, so that it cannot be followed.
-        """
+        """The packets that come within a wait."""
         data = self._line.read(timeout_s)
         out: list[Packet] = []
         try:

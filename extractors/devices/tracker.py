@@ -309,9 +309,6 @@ class LiveTracker(ABC):
         """Note that the device was listened to from a moment on.
 
         Only time spent waiting in vain counts as silence: a busy computer may not have listened.
-
-        Raises:
-            DeviceLostError: It was silent for too long.
         """
         waited_s = min(time.monotonic() - since_s, POLL_S)
         self._silent_s = 0.0 if heard else self._silent_s + waited_s

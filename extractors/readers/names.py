@@ -46,7 +46,8 @@ def spellings(names: Iterable[str]) -> dict[str, list[tuple[str, str]]]:
     """
     split = {name: split_name(name) for name in names}
     bares = list(dict.fromkeys(bare for _, bare in split.values()))
-    beginnings, endings = _beginnings(bares), _endings(bares)
+    beginnings = _beginnings(bares)
+    endings = _shared(bare[at.start() :] for bare in bares for at in re.finditer(r"[_ .\-]+", bare))
     out = {}
     for name, (subject, bare) in split.items():
         found = [(subject, bare)]
@@ -62,26 +63,21 @@ def spellings(names: Iterable[str]) -> dict[str, list[tuple[str, str]]]:
     return out
 
 
+def _shared(affixes: Iterable[str]) -> list[str]:
+    """The affixes of many names that mean no side; shortest first."""
+    many = (each for each, count in Counter(affixes).items() if count >= SHARED_BY)
+    return sorted((each for each in many if key_of(each) not in SIDE_AFFIXES), key=len)
+
+
 def _beginnings(names: list[str]) -> list[str]:
     """What many names begin with up to a separator, and what all begin with; shortest first."""
-    counts = Counter(name[: at.end()] for name in names for at in re.finditer(r"[_ .\-]+", name))
-    shared = {each for each, count in counts.items() if count >= SHARED_BY and not _is_side(each)}
+    cuts = ((name, at.end()) for name in names for at in re.finditer(r"[_ .\-]+", name))
+    shared = {*_shared(name[:end] for name, end in cuts)}
     letters = takewhile(lambda column: len(set(column)) == 1, zip(*names, strict=False))
     whole = "".join(column[0] for column in letters)
     if len(names) >= SHARED_BY and len(whole) >= COMMON_LETTERS:
         shared.add(whole)
     return sorted(shared, key=len)
-
-
-def _endings(names: list[str]) -> list[str]:
-    """What many names end with from a separator on; shortest first."""
-    counts = Counter(name[at.start() :] for name in names for at in re.finditer(r"[_ .\-]+", name))
-    shared = (each for each, count in counts.items() if count >= SHARED_BY and not _is_side(each))
-    return sorted(shared, key=len)
-
-
-def _is_side(affix: str) -> bool:
-    return key_of(affix) in SIDE_AFFIXES
 
 
 def matched(
@@ -168,28 +164,24 @@ class Convention:
 @cache
 def conventions() -> Mapping[str, Convention]:
     """Every convention by name."""
-    folder = files("extractors.readers") / "data" / "conventions"
     out = {}
+    folder = files("extractors.readers") / "data" / "conventions"
     for file in sorted(folder.iterdir(), key=lambda each: each.name):
         if file.name.endswith(".toml"):
-            name = file.name.removesuffix(".toml")
-            out[name] = _convention(name, tomllib.loads(file.read_text("utf-8")))
+            name, row = file.name.removesuffix(".toml"), tomllib.loads(file.read_text("utf-8"))
+            out[name] = Convention(
+                name,
+                row["title"],
+                row["source"],
+                oriented=row["orientations"] == "given",
+                markers=row["orientations"] == "markers",
+                points=dict(_both_sides(row["points"])),
+                weights=row.get("weights", {}),
+                on=dict(_both_sides(row.get("on", {}))),
+                computed=tuple(row.get("computed", ())),
+                units_m=tuple(row.get("units_m", ())),
+            )
     return out
-
-
-def _convention(name: str, row: Mapping[str, Any]) -> Convention:
-    return Convention(
-        name,
-        row["title"],
-        row["source"],
-        oriented=row["orientations"] == "given",
-        markers=row["orientations"] == "markers",
-        points=dict(_both_sides(row["points"])),
-        weights=row.get("weights", {}),
-        on=dict(_both_sides(row.get("on", {}))),
-        computed=tuple(row.get("computed", ())),
-        units_m=tuple(row.get("units_m", ())),
-    )
 
 
 def _both_sides(names: Mapping[str, str]) -> Iterator[tuple[str, str]]:
@@ -343,19 +335,16 @@ def end_effectors(recording: Recording) -> dict[str, str]:
     In a skeleton these are the first joint of each hand, foot or head, not the fingers below it.
     """
     kinds = {name: limb_of(name) for name in recording.bodies}
-    return {
-        name: kind
-        for name, kind in kinds.items()
-        if kind and not any(kinds.get(each) == kind for each in _ancestors(recording, name))
-    }
 
+    def is_below(name: str, kind: str) -> bool:
+        seen = {name}
+        while (name := recording.parents.get(name, "")) and name not in seen:
+            seen.add(name)
+            if kinds.get(name) == kind:
+                return True
+        return False
 
-def _ancestors(recording: Recording, name: str) -> list[str]:
-    out: list[str] = []
-    while name in recording.parents and recording.parents[name] not in out:
-        name = recording.parents[name]
-        out.append(name)
-    return out
+    return {name: kind for name, kind in kinds.items() if kind and not is_below(name, kind)}
 
 
 @dataclass(frozen=True)
@@ -512,15 +501,20 @@ def body_names(names: Iterable[str]) -> dict[str, BodyName]:
         out |= found
         left = {name: each for name, each in left.items() if name not in found}
         least = LEAST_NAMES
-    worded = dict(_by_words(left))
+    worded = {}
+    for name in left:
+        subject, bare = split_name(name)
+        if place := _place(bare):
+            exact = not any(each.isdigit() for each in bare)
+            worded[name] = BodyName(name, place, exact, BY_WORDS, subject)
     seen = {each.part for each in [*out.values(), *worded.values()]}
     if len(seen) < LEAST_PARTS:
-        worded = {name: each for name, each in worded.items() if not _doubtful(each)}
+        worded = {
+            name: each
+            for name, each in worded.items()
+            if each.side != "none" or each.part in {"head", "pelvis"}
+        }
     return out | worded
-
-
-def _doubtful(found: BodyName) -> bool:
-    return found.side == "none" and found.part not in {"head", "pelvis"}
 
 
 def _known(convention: Convention, spelled: Spelled) -> dict[str, BodyName]:
@@ -532,15 +526,6 @@ def _known(convention: Convention, spelled: Spelled) -> dict[str, BodyName]:
     return out
 
 
-def _by_words(names: Iterable[str]) -> Iterator[tuple[str, BodyName]]:
-    for name in names:
-        subject, bare = split_name(name)
-        place = _place(bare)
-        if place:
-            exact = not any(each.isdigit() for each in bare)
-            yield name, BodyName(name, place, exact, BY_WORDS, subject)
-
-
 def _place(bare: str) -> str:
     """The place that a name's words tell of; an empty string if none does."""
     bare = re.sub(r"\d+$", "", bare)
@@ -550,13 +535,9 @@ def _place(bare: str) -> str:
     side = next((each for each in SIDES if each[0] in words), side_of(bare))
     for word, place in _table("words")["words"].items():
         if word in words or word in pairs:
-            sided = "{side}" in place
-            return str(place.format(side=side)) if sided and side != "none" else _unsided(place)
+            plain = place.removeprefix("{side}_")
+            return plain if side == "none" else str(place.format(side=side))
     return ""
-
-
-def _unsided(place: str) -> str:
-    return place.removeprefix("{side}_")
 
 
 def computed(names: Iterable[str]) -> list[str]:

@@ -304,11 +304,7 @@ class _Declared:
 
 
 def _declared(document: CaptureFile, files: Files) -> _Declared:
-    """The sensors and objects of a capture.toml, resampled to one clock.
-
-    Raises:
-        CaparError: A name is unknown, a body cannot be found, or clocks differ.
-    """
+    """The sensors and objects of a capture.toml, resampled to one clock."""
     many = [(entry, *many_objects(entry, files)) for entry in document.objects_from]
     sensors = [*document.sensor]
     sensors += [each for entry in document.sensors_from for each in _many_sensors(entry, files)]
@@ -472,11 +468,7 @@ def _bodies(entry: ManySensors | ManyObjects, files: Files) -> Mapping[str, Any]
 
 
 def _many_sensors(entry: ManySensors, files: Files) -> list[SensorEntry]:
-    """A ``[[sensor]]`` for each body that a ``[[sensors_from]]`` stands for.
-
-    Raises:
-        UnknownNameError: A file or body that is not there.
-    """
+    """A ``[[sensor]]`` for each body that a ``[[sensors_from]]`` stands for."""
     known = _bodies(entry, files)
     names = list(known) if entry.bodies == "*" else entry.bodies
     names = [names] if isinstance(names, str) else names

@@ -1,4 +1,8 @@
-"""What is of a body in a file: its parts, sides, stance, floor, marker sets and sensors."""
+"""What is of a body in a file: its parts, sides, stance, floor, marker sets and sensors.
+
+How a person stands is found by the places of the body's parts, by their names: heads are above
+pelvises, pelvises above feet, and people are 1.0 to 2.2 m tall.
+"""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -25,287 +29,78 @@ from extractors.readers.names import (
 )
 from extractors.readers.recording import Recording
 
+Track = Float[np.ndarray, "frames 3"]
+Points = Mapping[str, Track]
+
 RIGID_M = 0.004
 """Markers whose distance varies less are of one rigid body [m]."""
 
-NEAR_M = 0.5
-"""And they are no further apart than this [m]."""
+NEAR_M, NAMED_NEAR_M = 0.5, 2.0
+"""And they are no further apart than this [m]; the latter if their names begin alike."""
 
-NAMED_NEAR_M = 2.0
-"""... or than this, if their names begin with the same word [m]."""
+RIDING_M, SEGMENT_M = 0.020, 0.3
+"""The distance of two markers on the skin of one segment varies by no more than the former, and is
+no more than the latter [m]."""
 
+FIXED_M = 0.02
+"""What never goes further than this from where it usually is does not move [m]."""
 
-def marker_sets(
-    markers: Mapping[str, Float[np.ndarray, "frames 3"]],
-) -> dict[str, list[str]]:
-    """Sets of three or more markers that share a prefix or, among the rest, keep their distances.
+LEAST_PARTS = 3
+"""A body is in a file if so many of its parts have a joint or marker."""
 
-    Positions are in metres.
-    """
-    sets: dict[str, list[str]] = {}
-    for stem in (_prefix, _first_word):
-        groups: dict[str, list[str]] = {}
-        for name in _left(markers, sets):
-            groups.setdefault(stem(name), []).append(name)
-        for prefix, names in groups.items():
-            for members in _rigid_sets(markers, names, NAMED_NEAR_M):
-                sets[_numbered(prefix, sets)] = members
-    for members in _rigid_sets(markers, _left(markers, sets), NEAR_M):
-        sets[_numbered("markers_1", sets)] = members
-    return sets
-
-
-def _left(markers: Mapping[str, object], sets: Mapping[str, list[str]]) -> list[str]:
-    """Markers that are in no set yet."""
-    taken = {name for members in sets.values() for name in members}
-    return [name for name in markers if name not in taken]
-
-
-def _numbered(name: str, taken: Mapping[str, object]) -> str:
-    """The name itself, or with the first number that nothing else has."""
-    if name not in taken:
-        return name
-    stem = name.removesuffix("_1")
-    return next(each for n in range(2, len(taken) + 3) if (each := f"{stem}_{n}") not in taken)
-
-
-def _prefix(name: str) -> str:
-    parts = re.split(r"[:_. ]", name)
-    return parts[0] if len(parts) > 1 else re.sub(r"\d+$", "", name) or name
-
-
-def _first_word(name: str) -> str:
-    """The first word of a name whose words begin with capitals: ``WheelRearLeft``."""
-    found = re.match(r"[A-Z]?[a-z]+", name)
-    return found.group() if found else name
-
-
-def _rigid_sets(
-    markers: Mapping[str, Float[np.ndarray, "frames 3"]], names: list[str], near_m: float
-) -> list[list[str]]:
-    """Greedy sets of markers of which each keeps its distance to all the others."""
-    rigid = {
-        frozenset(pair)
-        for pair in combinations(names, 2)
-        if keeps_distance(markers[pair[0]], markers[pair[1]], near_m=near_m)
-    }
-    left, sets = list(names), []
-    while left:
-        members = [left[0]]
-        for name in left[1:]:
-            if all(frozenset((name, each)) in rigid for each in members):
-                members.append(name)
-        left = [each for each in left if each not in members]
-        if len(members) >= 3:
-            sets.append(members)
-    return sets
-
-
-def keeps_distance(
-    first: Float[np.ndarray, "frames 3"],
-    second: Float[np.ndarray, "frames 3"],
-    *,
-    near_m: float = NEAR_M,
-    rigid_m: float = RIGID_M,
-) -> bool:
-    """Whether two markers are near each other and stay as far apart as they are."""
-    apart = np.linalg.norm(first - second, axis=1)
-    apart = apart[~np.isnan(apart)]
-    if not apart.size or float(np.median(apart)) > near_m:
-        return False
-    low, high = np.quantile(apart, [0.05, 0.95])
-    return bool(high - low < rigid_m)
-
-
-LIMBS = {
+HANGING = {
     "pelvis": ("thigh", "shank", "foot"),
     "trunk": ("upper_arm", "forearm", "hand", "fingers"),
 }
 """The parts of the limbs that hang on the pelvis and on the trunk, the nearest ones first."""
 
-
-def sided(
-    names: Mapping[str, BodyName], points: Mapping[str, Float[np.ndarray, "frames 3"]]
-) -> dict[str, BodyName]:
-    """Names of one limb that has no side, with the side of what its nearest part is nearer to."""
-    out = _one_sided(names, points)
-    for base, limb in LIMBS.items():
-        parts = [each for each in out.values() if each.part in limb]
-        bare = [each for each in parts if each.side == "none"]
-        known = {each.side for each in parts} - {"none"}
-        side = known.pop() if len(known) == 1 else ""
-        if bare and len(bare) == len(parts):
-            first = min(parts, key=lambda each: limb.index(each.part)).part
-            own = [points[each.name] for each in parts if each.part == first]
-            side = _nearer(out, points, base, own)
-        if side:
-            out |= {e.name: replace(e, place=f"{side}_{e.place}") for e in bare}
-    return out
-
-
-def _one_sided(
-    names: Mapping[str, BodyName], points: Mapping[str, Float[np.ndarray, "frames 3"]]
-) -> dict[str, BodyName]:
-    """Names without the sides that are those of one hand or foot: ``hand_left``, ``hand_right``.
-
-    The two hands never keep their distance, nor do the feet.
-    """
-    out = dict(names)
-    for part in ("hand", "foot"):
-        own = {side: [e for e in names.values() if (e.part, e.side) == (part, side)]
-               for side in SIDES}  # fmt: skip
-        pairs = [(a.name, b.name) for a in own["right"] for b in own["left"]]
-        if pairs and all(keeps_distance(points[a], points[b]) for a, b in pairs):
-            out |= {
-                e.name: replace(e, place=without_side(e.place))
-                for each in own.values()
-                for e in each
-            }
-    return out
-
-
-def _nearer(
-    names: Mapping[str, BodyName],
-    points: Mapping[str, Float[np.ndarray, "frames 3"]],
-    base: str,
-    own: list[Float[np.ndarray, "frames 3"]],
-) -> str:
-    """The side whose points of a part are nearer; an empty string if it has none with a side."""
-    seen = [each for each in own if not np.isnan(each).all()]
-    distance = {}
-    for side in SIDES:
-        others = [points[name] for name, e in names.items() if e.part == base and e.side == side]
-        apart = [np.linalg.norm(a - b, axis=1) for a in seen for b in others]
-        known = [float(np.nanmean(each)) for each in apart if not np.isnan(each).all()]
-        if known:
-            distance[side] = float(np.mean(known))
-    return min(distance, key=lambda side: distance[side], default="")
-
-
-Points = Mapping[str, Float[np.ndarray, "frames 3"]]
-
 SPREAD = 0.25
-"""Places tell how somebody stands if their usual heights differ by so much [share of stature]."""
+"""Places show how somebody stands if their usual heights differ by so much [share of stature]."""
 
 BREADTH = ("trunk", "pelvis", "thigh", "upper_arm", "head")
-"""Parts whose right and left lie beside each other, whatever hands and feet do."""
+"""Parts whose right and left lie next to each other, whatever hands and feet do."""
 
+STANDING_MPS = 0.25
+"""A foot's lowest point that is slower than this stands [m/s]."""
 
-def points_of(recording: Recording) -> dict[str, Float[np.ndarray, "frames 3"]]:
-    """Every joint and marker of a file, in its own unit and axes."""
-    return {name: each.positions for name, each in recording.bodies.items()} | dict(
-        recording.markers
-    )
+LOW_M = 0.05
+"""... if it is no higher above the lowest than this [m]: a foot may be held still in the air."""
 
+SHARES = (0.05, 0.95)
+"""The range in which feet stand is between these shares of their frames [1]."""
 
-def mean_of(points: Points, names: Iterable[str]) -> Float[np.ndarray, "frames 3"]:
-    """The mean of some points in every frame in which any of them is seen; else NaN."""
-    stack = np.stack([points[name] for name in names])
-    seen = ~np.isnan(stack).any(axis=2)
-    total = np.where(seen[..., None], stack, 0.0).sum(axis=0)
-    with np.errstate(invalid="ignore"):
-        return np.asarray(total / np.where(seen.any(axis=0), seen.sum(axis=0), np.nan)[:, None])
+TOLERANCE_M = (0.010, 0.040)
+"""The least and largest tolerance of contact that a floor is drafted with [m]."""
 
+MARGIN_M = 1.0
+"""How far the floor goes beyond where feet are [m]."""
 
-def standing_by_parts(points: Points, names: Mapping[str, BodyName]) -> Standing | None:
-    """How a person stands by the heights of the parts that are there; None if they do not tell.
+SEEN_SHARE = 0.4
+"""A marker seen in a smaller share of the frames than the one of its limb that is seen most often
+is left out: it would blind the whole sensor [1]."""
 
-    In each frame the places of joints and markers are fitted by a line over their usual heights;
-    its slope is the vector from the ground to the top of the head.
-    """
-    groups: dict[float, list[str]] = {}
-    for name, each in names.items():
-        if each.height is not None:
-            groups.setdefault(each.height, []).append(name)
-    if len(groups) < 2:
-        return None
-    places = np.stack([mean_of(points, group) for group in groups.values()])
-    way = _slopes(np.array(list(groups)), places)
-    if way is None:
-        return None
-    axis = int(np.argmax(np.abs(way)))
-    lengths = np.sort(np.abs(way))
-    up = f"{'-' if way[axis] < 0.0 else ''}{'xyz'[axis]}"
-    known = {names[name].part: None for group in groups.values() for name in group}
-    evidence = f"by how high {_listed(known)} are the person is {lengths[2]:.4g} tall"
-    return Standing(
-        up, float(lengths[2]), bool(lengths[2] > CLEAR * lengths[1]), evidence, whole=True
-    )
+RESIDUAL_M, LOOSE_M = 0.010, 0.030
+"""Median distances of markers from a rigid arrangement: the usual limit, and what no segment has
+[m]."""
 
+STRETCH = 1.5
+"""The stated limit is the measured residual times this [1]."""
 
-def _slopes(
-    usual: Float[np.ndarray, "heights"], places: Float[np.ndarray, "heights frames 3"]
-) -> Float[np.ndarray, "3"] | None:
-    """The median over frames of the place's slope over usual height."""
-    seen = ~np.isnan(places).any(axis=2)
-    out = []
-    for frame in range(places.shape[1]):
-        heights = usual[seen[:, frame]]
-        if len(heights) > 1 and np.ptp(heights) >= SPREAD:
-            off = heights - heights.mean()
-            out.append(off @ places[seen[:, frame], frame] / (off @ off))
-    return np.median(out, axis=0) if out else None
+STAGES: Mapping[str, Sequence[Sequence[str]]] = {
+    "hand": (
+        ("hand",),
+        ("wrist_radial", "wrist_ulnar"),
+        ("forearm",),
+        ("elbow", "elbow_lateral", "elbow_medial"),
+    ),
+    "foot": (("foot",), ("ankle_lateral", "ankle_medial"), ("shank",)),
+    "head": (("head",),),
+}
+"""Parts and places whose markers carry an end-effector's sensor, the next ones where there are
+fewer than three: the joint next to it, then the segment next to it."""
 
-
-def _listed(names: Iterable[str]) -> str:
-    *most, last = names
-    return f"{', '.join(most)} and {last}" if most else last
-
-
-def rightwards(points: Points, names: Mapping[str, BodyName]) -> Float[np.ndarray, "frames 3"]:
-    """From left to right through the body in each frame; NaN where it is not seen."""
-    pairs: dict[str, dict[str, list[str]]] = {}
-    for name, each in names.items():
-        if each.part in BREADTH and each.side != "none":
-            pairs.setdefault(without_side(each.place), {}).setdefault(each.side, []).append(name)
-    ways = [
-        mean_of(points, pair["right"]) - mean_of(points, pair["left"])
-        for pair in pairs.values()
-        if len(pair) == 2
-    ]
-    frames = len(next(iter(points.values())))
-    if not ways:
-        return np.full((frames, 3), np.nan)
-    numbered = {str(number): way for number, way in enumerate(ways)}
-    return mean_of(numbered, numbered)
-
-
-def up_beside(points: Points, names: Mapping[str, BodyName]) -> tuple[str, str] | None:
-    """The axis that points up, by the one along which right and left lie, with the evidence.
-
-    Files have y or z up; the one of them that is not across the body is.
-    """
-    way = rightwards(points, names)
-    way = way[~np.isnan(way).any(axis=1)]
-    if not len(way):
-        return None
-    lengths = np.abs(np.median(way, axis=0))
-    across = int(np.argmax(lengths))
-    if across == 0 or lengths[across] < CLEAR * np.sort(lengths)[1]:
-        return None
-    up = "yz"[across == 1]
-    return up, f"left and right lie along {'xyz'[across]}, and files have y or z up"
-
-
-def forwards(rightward: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames 3"]:
-    """Unit vectors to where the body faces, level, in a world whose z axis points up."""
-    level = np.stack([-rightward[:, 1], rightward[:, 0], np.zeros(len(rightward))], axis=1)
-    length = np.linalg.norm(level, axis=1, keepdims=True)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(np.where(length > 0.0, level / length, np.nan))
-
-
-LEAST_PARTS = 3
-"""A body is in a file if so many of its parts have a joint or marker."""
-
-RIDING_M = 0.020
-"""The distance of two markers on the skin of one segment varies by no more than this [m]."""
-
-SEGMENT_M = 0.3
-"""... and they are no further apart than this [m]."""
-
-FIXED_M = 0.02
-"""What never goes further than this from where it usually is does not move [m]."""
+BENDS = ("toe_tip", "toes", "fingertip", "fingers")
+"""Places that bend against the rest of the foot or hand."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -326,35 +121,101 @@ class Contents:
         titles = {each.by for each in self.body.values()}
         return [unit for c in conventions().values() if c.title in titles for unit in c.units_m]
 
-    @property
-    def subjects(self) -> list[str]:
-        """Whose bodies are in it."""
-        return list(dict.fromkeys(each.subject for each in self.body.values()))
-
 
 def contents(recording: Recording) -> Contents:
     """What of a file is of a body."""
-    points = points_of(recording)
+    points = _points(recording)
     metres = {name: each * (recording.unit_m or 1.0) for name, each in points.items()}
     found = sided(body_names([*recording.bodies, *recording.markers]), metres)
-    if len({each.part for each in found.values()}) < LEAST_PARTS or not _one_clock(points):
+    clocks = {len(each) for each in points.values()}
+    if len({each.part for each in found.values()}) < LEAST_PARTS or len(clocks) != 1:
         return Contents(recording, {}, standing(recording), None)
     stands = standing(recording)
     if stands is None or not stands.clear:
         stands = standing_by_parts(points, found) or stands
-    return Contents(recording, found, stands, up_beside(points, found))
+    return Contents(recording, found, stands, _up_beside(points, found))
 
 
-def _one_clock(points: Mapping[str, Float[np.ndarray, "frames 3"]]) -> bool:
-    return len({len(each) for each in points.values()}) == 1
+def _points(recording: Recording) -> dict[str, Track]:
+    """Every joint and marker of a file, in its own unit and axes."""
+    bodies = {name: each.positions for name, each in recording.bodies.items()}
+    return bodies | dict(recording.markers)
 
 
-def world_points(
-    recording: Recording, unit_m: float, up: str
-) -> dict[str, Float[np.ndarray, "frames 3"]]:
+def world_points(recording: Recording, unit_m: float, up: str) -> dict[str, Track]:
     """Joints and markers in metres with z up."""
     turn = upward(up)
-    return {name: turn.apply(each * unit_m) for name, each in points_of(recording).items()}
+    return {name: turn.apply(each * unit_m) for name, each in _points(recording).items()}
+
+
+def keeps_distance(
+    first: Track, second: Track, *, near_m: float = NEAR_M, rigid_m: float = RIGID_M
+) -> bool:
+    """Whether two markers are near each other and stay as far apart as they are."""
+    apart = np.linalg.norm(first - second, axis=1)
+    apart = apart[~np.isnan(apart)]
+    if not apart.size or float(np.median(apart)) > near_m:
+        return False
+    low, high = np.quantile(apart, [0.05, 0.95])
+    return bool(high - low < rigid_m)
+
+
+def _marker_sets(markers: Points) -> dict[str, list[str]]:
+    """Sets of three or more markers that share a prefix or, among the rest, keep their distances.
+
+    Positions are in metres.
+    """
+
+    def prefix(name: str) -> str:
+        parts = re.split(r"[:_. ]", name)
+        return parts[0] if len(parts) > 1 else re.sub(r"\d+$", "", name) or name
+
+    def first_word(name: str) -> str:
+        """``Wheel`` of ``WheelRearLeft``."""
+        found = re.match(r"[A-Z]?[a-z]+", name)
+        return found.group() if found else name
+
+    def left() -> list[str]:
+        taken = {name for members in sets.values() for name in members}
+        return [name for name in markers if name not in taken]
+
+    def free(name: str) -> str:
+        """The name itself, or with the first number that nothing else has."""
+        if name not in sets:
+            return name
+        stem = name.removesuffix("_1")
+        return next(each for n in range(2, len(sets) + 3) if (each := f"{stem}_{n}") not in sets)
+
+    sets: dict[str, list[str]] = {}
+    for stem in (prefix, first_word):
+        groups: dict[str, list[str]] = {}
+        for name in left():
+            groups.setdefault(stem(name), []).append(name)
+        for start, names in groups.items():
+            for members in _rigid_sets(markers, names, NAMED_NEAR_M):
+                sets[free(start)] = members
+    for members in _rigid_sets(markers, left(), NEAR_M):
+        sets[free("markers_1")] = members
+    return sets
+
+
+def _rigid_sets(markers: Points, names: list[str], near_m: float) -> list[list[str]]:
+    """Greedy sets of markers of which each keeps its distance to all the others."""
+    rigid = {
+        frozenset(pair)
+        for pair in combinations(names, 2)
+        if keeps_distance(markers[pair[0]], markers[pair[1]], near_m=near_m)
+    }
+    left, sets = list(names), []
+    while left:
+        members = [left[0]]
+        for name in left[1:]:
+            if all(frozenset((name, each)) in rigid for each in members):
+                members.append(name)
+        left = [each for each in left if each not in members]
+        if len(members) >= 3:
+            sets.append(members)
+    return sets
 
 
 @dataclass(frozen=True)
@@ -375,10 +236,8 @@ class Others:
     loose: tuple[str, ...]
 
 
-def others(
-    markers: Mapping[str, Float[np.ndarray, "frames 3"]], body: Mapping[str, BodyName]
-) -> Others:
-    """What the markers are that no name tells to be of a body.
+def others(markers: Points, body: Mapping[str, BodyName]) -> Others:
+    """What the markers are that by their names are of no body.
 
     Args:
         markers: In metres.
@@ -387,14 +246,15 @@ def others(
     unseen = [name for name, each in markers.items() if np.isnan(each).all()]
     made = computed(name for name in markers if name not in unseen)
     left = [n for n in markers if n not in body and n not in unseen and n not in made]
-    sets = marker_sets({name: markers[name] for name in left})
-    taken = {name for members in sets.values() for name in members}
+    found = _marker_sets({name: markers[name] for name in left})
+    sets = {_set_name(name, members): members for name, members in found.items()}
+    taken = {name for members in found.values() for name in members}
     single = [name for name in left if name not in taken]
     riding = {name: part for name in single if (part := _carrier(name, markers, body))}
     return Others(
-        sets={_set_name(name, members): members for name, members in sets.items()},
+        sets=sets,
         fixed=frozenset(
-            _set_name(name, members) for name, members in sets.items() if _stays(markers, members)
+            name for name, members in sets.items() if all(_stays(markers[n]) for n in members)
         ),
         riding=riding,
         unseen=tuple(unseen),
@@ -403,11 +263,12 @@ def others(
     )
 
 
-def _carrier(
-    name: str,
-    markers: Mapping[str, Float[np.ndarray, "frames 3"]],
-    body: Mapping[str, BodyName],
-) -> str:
+def _stays(track: Track) -> bool:
+    places = track[~np.isnan(track).any(axis=1)]
+    return bool(np.abs(places - np.median(places, axis=0)).max() <= FIXED_M)
+
+
+def _carrier(name: str, markers: Points, body: Mapping[str, BodyName]) -> str:
     """The part of the body to two of whose markers a marker keeps its distance."""
     near: dict[str, int] = {}
     for other, each in body.items():
@@ -430,32 +291,126 @@ def _set_name(name: str, members: Iterable[str]) -> str:
     return shared if len(shared) > 2 else name
 
 
-def _stays(markers: Mapping[str, Float[np.ndarray, "frames 3"]], members: Iterable[str]) -> bool:
-    for name in members:
-        places = markers[name][~np.isnan(markers[name]).any(axis=1)]
-        if np.abs(places - np.median(places, axis=0)).max() > FIXED_M:
-            return False
-    return True
+def sided(names: Mapping[str, BodyName], points: Points) -> dict[str, BodyName]:
+    """Names of a limb without a side, with that side of the pelvis or trunk which it is nearer to.
+
+    The two hands never keep their distance, nor do the feet: sides in the names of one hand or foot
+    (``hand_left``, ``hand_right``) are no sides of the body.
+    """
+    out = dict(names)
+    for part in ("hand", "foot"):
+        own = [each for each in names.values() if each.part == part and each.side != "none"]
+        pairs = [(a, b) for a in own for b in own if (a.side, b.side) == ("right", "left")]
+        if pairs and all(keeps_distance(points[a.name], points[b.name]) for a, b in pairs):
+            out |= {each.name: replace(each, place=without_side(each.place)) for each in own}
+    for base, limb in HANGING.items():
+        parts = [each for each in out.values() if each.part in limb]
+        bare = [each for each in parts if each.side == "none"]
+        known = {each.side for each in parts} - {"none"}
+        side = known.pop() if len(known) == 1 else ""
+        if bare and len(bare) == len(parts):
+            first = min(parts, key=lambda each: limb.index(each.part)).part
+            own_tracks = [points[each.name] for each in parts if each.part == first]
+            side = _nearer(out, points, base, own_tracks)
+        if side:
+            out |= {e.name: replace(e, place=f"{side}_{e.place}") for e in bare}
+    return out
 
 
-STANDING_MPS = 0.25
-"""A foot's lowest point that is slower than this stands [m/s]."""
+def _nearer(names: Mapping[str, BodyName], points: Points, base: str, own: list[Track]) -> str:
+    """The side whose points of a part are nearer; an empty string if it has none with a side."""
+    seen = [each for each in own if not np.isnan(each).all()]
+    distance = {}
+    for side in SIDES:
+        theirs = [points[name] for name, e in names.items() if e.part == base and e.side == side]
+        apart = [np.linalg.norm(a - b, axis=1) for a in seen for b in theirs]
+        known = [float(np.nanmean(each)) for each in apart if not np.isnan(each).all()]
+        if known:
+            distance[side] = float(np.mean(known))
+    return min(distance, key=lambda side: distance[side], default="")
 
-LOW_M = 0.05
-"""... if it is no higher above the lowest than this [m]: a foot may be held still in the air."""
 
-SHARES = (0.05, 0.95)
-"""The range in which feet stand is between these shares of their frames [1]."""
+def mean_of(points: Points, names: Iterable[str]) -> Track:
+    """The mean of some points in every frame in which any of them is seen; else NaN."""
+    stack = np.stack([points[name] for name in names])
+    seen = ~np.isnan(stack).any(axis=2)
+    total = np.where(seen[..., None], stack, 0.0).sum(axis=0)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(total / np.where(seen.any(axis=0), seen.sum(axis=0), np.nan)[:, None])
 
-TOLERANCE_M = (0.010, 0.040)
-"""The least and largest tolerance of contact that a floor is drafted with [m]."""
 
-MARGIN_M = 1.0
-"""How far the floor goes beyond where feet are [m]."""
+def standing_by_parts(points: Points, names: Mapping[str, BodyName]) -> Standing | None:
+    """How a person stands by the heights of the parts that are there; None if they do not show it.
 
-THICK_M = 0.02
-RADIUS_M = 0.03
-"""Radius of a foot's stand-in: half the thickness of a foot [m]."""
+    In each frame the places of joints and markers are fitted by a line over their usual heights;
+    its slope is the vector from the ground to the top of the head.
+    """
+    groups: dict[float, list[str]] = {}
+    for name, each in names.items():
+        if each.height is not None:
+            groups.setdefault(each.height, []).append(name)
+    if len(groups) < 2:
+        return None
+    usual = np.array(list(groups))
+    places = np.stack([mean_of(points, group) for group in groups.values()])
+    seen = ~np.isnan(places).any(axis=2)
+    slopes = []
+    for frame in range(places.shape[1]):
+        heights = usual[seen[:, frame]]
+        if len(heights) > 1 and np.ptp(heights) >= SPREAD:
+            off = heights - heights.mean()
+            slopes.append(off @ places[seen[:, frame], frame] / (off @ off))
+    if not slopes:
+        return None
+    slope = np.median(slopes, axis=0)
+    axis, lengths = int(np.argmax(np.abs(slope))), np.sort(np.abs(slope))
+    up = f"{'-' if slope[axis] < 0.0 else ''}{'xyz'[axis]}"
+    *most, last = {names[name].part: None for group in groups.values() for name in group}
+    listed = f"{', '.join(most)} and {last}" if most else last
+    evidence = f"by how high {listed} are the person is {lengths[2]:.4g} tall"
+    clear = bool(lengths[2] > CLEAR * lengths[1])
+    return Standing(up, float(lengths[2]), clear, evidence, whole=True)
+
+
+def rightwards(points: Points, names: Mapping[str, BodyName]) -> Track:
+    """From left to right through the body in each frame; NaN where it is not seen."""
+    pairs: dict[str, dict[str, list[str]]] = {}
+    for name, each in names.items():
+        if each.part in BREADTH and each.side != "none":
+            pairs.setdefault(without_side(each.place), {}).setdefault(each.side, []).append(name)
+    across = {
+        place: mean_of(points, pair["right"]) - mean_of(points, pair["left"])
+        for place, pair in pairs.items()
+        if len(pair) == 2
+    }
+    if not across:
+        return np.full((len(next(iter(points.values()))), 3), np.nan)
+    return mean_of(across, across)
+
+
+def _up_beside(points: Points, names: Mapping[str, BodyName]) -> tuple[str, str] | None:
+    """The axis that points up, by the one along which right and left lie, with the evidence.
+
+    Files have y or z up; the one of them that is not across the body is.
+    """
+    way = rightwards(points, names)
+    way = way[~np.isnan(way).any(axis=1)]
+    if not len(way):
+        return None
+    lengths = np.abs(np.median(way, axis=0))
+    across = int(np.argmax(lengths))
+    if across == 0 or lengths[across] < CLEAR * np.sort(lengths)[1]:
+        return None
+    up = "yz"[across == 1]
+    return up, f"left and right lie along {'xyz'[across]}, and files have y or z up"
+
+
+def forwards(rightward: Track) -> Track:
+    """Unit vectors to where the body faces, level, in a world whose z axis points up."""
+    level = np.stack([-rightward[:, 1], rightward[:, 0], np.zeros(len(rightward))], axis=1)
+    length = np.linalg.norm(level, axis=1, keepdims=True)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(np.where(length > 0.0, level / length, np.nan))
 
 
 @dataclass(frozen=True)
@@ -478,12 +433,11 @@ class Floor:
     @property
     def tolerance_m(self) -> float:
         """Distance at which feet touch it: what their heights differ by [m]."""
-        low, high = TOLERANCE_M
-        return float(np.clip(np.ceil(200 * self.spread_m) / 200, low, high))
+        return float(np.clip(np.ceil(200 * self.spread_m) / 200, *TOLERANCE_M))
 
 
 def floor(
-    points: Points, feet: Mapping[str, Sequence[str]], rate_hz: float, radius_m: float = RADIUS_M
+    points: Points, feet: Mapping[str, Sequence[str]], rate_hz: float, radius_m: float
 ) -> Floor:
     """The floor under some feet.
 
@@ -493,8 +447,7 @@ def floor(
         rate_hz: Frames a second.
         radius_m: How far the surface of a foot's stand-in is from its points.
     """
-    standing = [_standing_heights(points, names, rate_hz) for names in feet.values()]
-    heights = np.concatenate(standing)
+    heights = np.concatenate([_standing_heights(points, names, rate_hz) for names in feet.values()])
     rests = bool(heights.size)
     if not rests:
         heights = np.array([np.nanmin(points[n][:, 2]) for group in feet.values() for n in group])
@@ -503,14 +456,8 @@ def floor(
     ground = np.concatenate([points[name] for names in feet.values() for name in names])
     ground = ground[~np.isnan(ground).any(axis=1), :2]
     first, last = ground.min(axis=0) - MARGIN_M, ground.max(axis=0) + MARGIN_M
-    (x, y), (long, wide) = (first + last) / 2, last - first
-    return Floor(
-        float(low) - radius_m,
-        float(high - low),
-        (float(x), float(y)),
-        (float(long), float(wide)),
-        rests,
-    )
+    (x, y), (long, wide) = ((first + last) / 2).tolist(), (last - first).tolist()
+    return Floor(float(low) - radius_m, float(high - low), (x, y), (long, wide), rests)
 
 
 def _standing_heights(
@@ -519,43 +466,11 @@ def _standing_heights(
     """Heights of a foot's lowest point in the frames in which it stands [m]."""
     stack = np.stack([points[name] for name in names])
     heights = np.where(np.isnan(stack[..., 2]), np.inf, stack[..., 2])
-    lowest = np.argmin(heights, axis=0)
-    frames = np.arange(stack.shape[1])
+    lowest, frames = np.argmin(heights, axis=0), np.arange(stack.shape[1])
     speeds = np.full(stack.shape[:2], np.inf)
     speeds[:, 1:] = np.linalg.norm(np.diff(stack, axis=1), axis=2) * rate_hz
-    own = speeds[lowest, frames]
-    height = heights[lowest, frames]
+    own, height = speeds[lowest, frames], heights[lowest, frames]
     return height[np.isfinite(height) & (np.nan_to_num(own, nan=np.inf) <= STANDING_MPS)]
-
-
-SEEN_SHARE = 0.4
-"""A marker seen in a smaller share of the frames than the one of its limb that is seen most often
-is left out: it would blind the whole sensor [1]."""
-
-RESIDUAL_M = 0.010
-"""Median distance of markers from a rigid arrangement that needs no word [m]."""
-
-LOOSE_M = 0.030
-"""Markers that leave their arrangement further than this are of no one segment [m]."""
-
-STRETCH = 1.5
-"""The stated limit is the measured residual times this [1]."""
-
-STAGES: Mapping[str, Sequence[Sequence[str]]] = {
-    "hand": (
-        ("hand",),
-        ("wrist_radial", "wrist_ulnar"),
-        ("forearm",),
-        ("elbow", "elbow_lateral", "elbow_medial"),
-    ),
-    "foot": (("foot",), ("ankle_lateral", "ankle_medial"), ("shank",)),
-    "head": (("head",),),
-}
-"""Parts and places whose markers carry an end-effector's sensor, the next ones where there are
-fewer than three: the joint beside it, then the segment next to it."""
-
-BENDS = ("toe_tip", "toes", "fingertip", "fingers")
-"""Places that bend against the rest of the foot or hand."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -567,18 +482,13 @@ class LimbSensor:
     subject: str
     markers: tuple[str, ...]
     own: tuple[str, ...]
-    """Those of them that are on the end-effector itself or the joint beside it."""
+    """Those of them that are on the end-effector itself or the joint next to it."""
 
     residual_m: float | None
     """A limit for the markers' residual, where the usual one is too narrow [m]."""
 
     gaze: tuple[float, float, float] | None
     """Forwards, in the sensor's frame, where it is known."""
-
-    @property
-    def borrowed(self) -> bool:
-        """Whether it rides on the segment beside it."""
-        return len(self.own) < len(self.markers)
 
 
 def limb_sensors(points: Points, names: Mapping[str, BodyName]) -> Iterator[LimbSensor]:
@@ -591,61 +501,48 @@ def limb_sensors(points: Points, names: Mapping[str, BodyName]) -> Iterator[Limb
     for subject in dict.fromkeys(each.subject for each in names.values()):
         own = {name: each for name, each in names.items() if each.subject == subject}
         for limb, stages in STAGES.items():
-            for side in (*SIDES, "none"):
-                sided = own if limb == "head" else _of_side(own, side)
-                if limb == "head" and side != "none":
-                    continue
-                found = _sensor(points, sided, own, limb, stages)
+            for side in ("none",) if limb == "head" else (*SIDES, "none"):
+                of_side = {n: each for n, each in own.items() if each.side == side}
+                found = _carriers(points, own if limb == "head" else of_side, stages)
                 if found is not None:
-                    markers, near, residual_m = found
-                    gaze = _gaze(points, own, markers) if limb == "head" else None
-                    yield LimbSensor(limb, side, subject, markers, near, residual_m, gaze)
+                    gaze = None
+                    if limb == "head":
+                        group = np.stack([points[name] for name in found[0]], axis=1)
+                        cluster = arrangement("draft", {name: points[name] for name in found[0]})
+                        turns = fit_cluster(cluster, group).orientations
+                        gaze = mean_forward(turns, forwards(rightwards(points, own)))
+                    yield LimbSensor(limb, side, subject, *found, gaze)
 
 
-def _of_side(names: Mapping[str, BodyName], side: str) -> dict[str, BodyName]:
-    return {name: each for name, each in names.items() if each.side == side}
-
-
-def _sensor(
-    points: Points,
-    sided: Mapping[str, BodyName],
-    everything: Mapping[str, BodyName],
-    limb: str,
-    stages: Sequence[Sequence[str]],
+def _carriers(
+    points: Points, names: Mapping[str, BodyName], stages: Sequence[Sequence[str]]
 ) -> tuple[tuple[str, ...], tuple[str, ...], float | None] | None:
     """Markers, those near the end-effector, and a limit for their residual."""
     markers: list[str] = []
     near: list[str] = []
+    places = {name: without_side(each.place) for name, each in names.items()}
     for number, stage in enumerate(stages):
-        added = [n for n, each in sided.items() if _is_of(each, stage) and n not in markers]
+        added = [
+            name
+            for name, each in names.items()
+            if name not in markers and (each.part in stage or places[name] in stage)
+        ]
         markers += added
         if number < 2:
             near += added
         if not near:
             continue
-        chosen = _often_seen(points, markers)
-        for group in (_unbent(chosen, everything), chosen):
+        counts = {name: int((~np.isnan(points[name]).any(axis=1)).sum()) for name in markers}
+        most = max(counts.values(), default=0)
+        chosen = [name for name, n in counts.items() if n and n >= SEEN_SHARE * most]
+        for group in ([name for name in chosen if places[name] not in BENDS], chosen):
             residual_m = _residual(points, group)
             if residual_m is not None and residual_m <= LOOSE_M:
-                limit = None if residual_m <= RESIDUAL_M else np.ceil(200 * STRETCH * residual_m)
-                kept = tuple(name for name in near if name in group)
-                return tuple(group), kept, None if limit is None else float(limit) / 200
+                limit = None
+                if residual_m > RESIDUAL_M:
+                    limit = float(np.ceil(200 * STRETCH * residual_m)) / 200
+                return tuple(group), tuple(name for name in near if name in group), limit
     return None
-
-
-def _is_of(each: BodyName, stage: Iterable[str]) -> bool:
-    place = without_side(each.place)
-    return each.part in stage or place in stage
-
-
-def _unbent(group: Sequence[str], names: Mapping[str, BodyName]) -> list[str]:
-    return [name for name in group if without_side(names[name].place) not in BENDS]
-
-
-def _often_seen(points: Points, names: Iterable[str]) -> list[str]:
-    counts = {name: int((~np.isnan(points[name]).any(axis=1)).sum()) for name in names}
-    most = max(counts.values(), default=0)
-    return [name for name, count in counts.items() if count and count >= SEEN_SHARE * most]
 
 
 def _residual(points: Points, names: Sequence[str]) -> float | None:
@@ -657,28 +554,19 @@ def _residual(points: Points, names: Sequence[str]) -> float | None:
         cluster = arrangement("draft", markers)
     except CaptureError:
         return None
-    fit = fit_cluster(cluster, np.stack(list(markers.values()), axis=1))
-    known = fit.residuals[~np.isnan(fit.residuals)]
+    residuals = fit_cluster(cluster, np.stack(list(markers.values()), axis=1)).residuals
+    known = residuals[~np.isnan(residuals)]
     return float(np.median(known)) if known.size else None
 
 
-def _gaze(
-    points: Points, names: Mapping[str, BodyName], markers: Sequence[str]
-) -> tuple[float, float, float] | None:
-    """Forwards in the frame of a marker set, in the mean."""
-    group = {name: points[name] for name in markers}
-    fit = fit_cluster(arrangement("draft", group), np.stack(list(group.values()), axis=1))
-    return mean_forward(fit.orientations, forwards(rightwards(points, names)))
-
-
 def mean_forward(
-    orientations: Float[np.ndarray, "frames 4"], ways: Float[np.ndarray, "frames 3"]
+    orientations: Float[np.ndarray, "frames 4"], directions: Track
 ) -> tuple[float, float, float] | None:
     """Where the body faces as a direction in a sensor's frame, in the mean."""
-    both = ~(np.isnan(orientations).any(axis=1) | np.isnan(ways).any(axis=1))
+    both = ~(np.isnan(orientations).any(axis=1) | np.isnan(directions).any(axis=1))
     if not both.any():
         return None
-    inner = geometry.rotations(orientations[both]).inv().apply(ways[both]).mean(axis=0)
+    inner = geometry.rotations(orientations[both]).inv().apply(directions[both]).mean(axis=0)
     length = float(np.linalg.norm(inner))
     if length < 0.5:
         return None
