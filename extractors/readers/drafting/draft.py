@@ -392,11 +392,7 @@ def _limb_shape(sensor: LimbSensor, body: Mapping[str, BodyName]) -> str:
 
 def _sensor_lines(body: _Body, name: str, limb: str, used: set[str]) -> list[str]:
     """The table of a sensor that is a body or marker set of a file."""
-    gaze = (
-        []
-        if body.gaze is None
-        else [f"gaze = {list(body.gaze)}      # forwards, by left and right"]
-    )
+    gaze = f"gaze = {list(body.gaze or ())}      # forwards, by left and right"
     default = '# shape = { sphere = 0.05 }     # a stand-in, or { mesh = "..." }: contact needs one'
     return [
         "",
