@@ -246,11 +246,6 @@ def same_agent(reader: Reader, value: Instruction) -> Instruction:
     return anybody.under(Condition(Relation.SAME_AGENT, about))
 
 
-def negated(value: Instruction) -> Instruction:
-    """The same, said not to be."""
-    return replace(value, circumstances=replace(value.circumstances, negated=True))
-
-
 HELPERS = ("did", "was", "were", "is", "does", "has", "had")
 GAP_THING, GAP_PERSON = Noun((GAP,)), Noun(any_person=True)
 

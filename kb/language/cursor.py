@@ -52,11 +52,6 @@ class Token:
     text: str
     column: int
 
-    @property
-    def quoted(self) -> bool:
-        """Whether it is a text in quotation marks."""
-        return self.text.startswith('"') and len(self.text) > 1
-
 
 def _parts(token: Token) -> tuple[Token, ...]:
     """A short form as the two words that it is: ``what's``."""

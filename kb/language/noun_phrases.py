@@ -1,6 +1,7 @@
 """Noun phrases, and times, counts and manners, as they stand in a sentence."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from kb.language.cursor import ARTICLES, Cursor
@@ -50,7 +51,6 @@ class Reader:
     """Where ``there`` is."""
 
     limb: str = ""
-    agent: str = ""
     gap: bool = False
     """Whether a preposition may stand without its object: ``what did she look at``."""
 
@@ -143,62 +143,83 @@ def _window(cursor: Cursor, found: Adjuncts) -> bool:
 
 def _window_at(cursor: Cursor) -> Window | None:
     if cursor.accept("("):
-        start = cursor.at
-        span = _span(cursor, "–", "-")
-        if span is None:
+        return _in_brackets(cursor)
+    start = cursor.at
+    for words, between in _BETWEEN.items():
+        if cursor.accept(words):
+            found = _span(cursor, *between)
+            if found is not None or words == "between":
+                return found
             cursor.at = start
-            moment = _seconds(cursor)
-            span = None if moment is None else (moment, moment)
-        while span and _joined(cursor) and (more := _span(cursor, "–", "-")):
-            span = (span[0], more[1])
-        return span if span and cursor.accept(")") else None
-    if cursor.accept("between"):
-        return _span(cursor, "and")
-    for opening in (("in",), ("within",), ("during",), ("for",), ()):
-        start = cursor.at
-        if cursor.accept(*opening) and (found := _edge(cursor)) is not None:
+    for words, read in _WINDOWS:
+        if cursor.accept(*words) and (found := read(cursor)) is not None:
             return found
         cursor.at = start
-    if cursor.accept("from"):
-        return _span(cursor, "to", "until", "till")
-    return _one_sided(cursor)
-
-
-def _joined(cursor: Cursor) -> bool:
-    """Whether another time of the same deed follows: ``(1–2 s and 3–4 s)``."""
-    return cursor.accept(",", "and") or cursor.accept(",") or cursor.accept("and")
-
-
-def _one_sided(cursor: Cursor) -> Window | None:
-    for words in (("after",), ("from",), ("since",), ("later", "than")):
-        start = cursor.at
-        if cursor.accept(*words) and (first := _seconds(cursor)) is not None:
-            cursor.accept("on") or cursor.accept("onwards")
-            return (first, math.inf)
-        cursor.at = start
-    for words in (("before",), ("until",), ("within",), ("by",), ("up", "to"), ("in",)):
-        start = cursor.at
-        if cursor.accept(*words) and (last := _seconds(cursor)) is not None:
-            return (0.0, last)
-        cursor.at = start
-    if cursor.accept("at"):
-        cursor.accept("second")
-        moment = _seconds(cursor)
-        return None if moment is None else (moment, moment)
     return None
+
+
+def _in_brackets(cursor: Cursor) -> Window | None:
+    """``(1–2 s)``, ``(1 s)``, or several times of one action: ``(1–2 s and 3–4 s)``."""
+    start = cursor.at
+    span = _span(cursor, "–", "-")
+    if span is None:
+        cursor.at = start
+        span = _moment(cursor)
+    while span and (cursor.accept(",", "and") or cursor.accept(",") or cursor.accept("and")):
+        more = _span(cursor, "–", "-")
+        if more is None:
+            break
+        span = (span[0], more[1])
+    return span if span and cursor.accept(")") else None
 
 
 def _edge(cursor: Cursor) -> Window | None:
     """``the first four seconds``, and the last ones, counted from the end."""
     cursor.accept("the")
-    for word in ("first", "last"):
-        if cursor.accept(word):
-            seconds = _seconds(cursor)
-            if seconds is None and (unit := cursor.longest(of_class("unit"))) is not None:
-                seconds = float(unit)
-            if seconds is not None:
-                return (0.0, seconds) if word == "first" else (-seconds, math.inf)
-    return None
+    first = cursor.accept("first")
+    if not first and not cursor.accept("last"):
+        return None
+    seconds = _seconds(cursor)
+    if seconds is None and (unit := cursor.longest(of_class("unit"))) is not None:
+        seconds = float(unit)
+    if seconds is None:
+        return None
+    return (0.0, seconds) if first else (-seconds, math.inf)
+
+
+def _since(cursor: Cursor) -> Window | None:
+    first = _seconds(cursor)
+    if first is None:
+        return None
+    cursor.accept("on") or cursor.accept("onwards")
+    return first, math.inf
+
+
+def _until(cursor: Cursor) -> Window | None:
+    last = _seconds(cursor)
+    return None if last is None else (0.0, last)
+
+
+def _moment(cursor: Cursor) -> Window | None:
+    cursor.accept("second")
+    moment = _seconds(cursor)
+    return None if moment is None else (moment, moment)
+
+
+_BETWEEN = {"between": ("and",), "from": ("to", "until", "till")}
+"""What begins a time from one moment to another, and what stands between the two."""
+
+_WINDOWS: tuple[tuple[tuple[str, ...], Callable[[Cursor], Window | None]], ...] = (
+    *(((word,), _edge) for word in ("in", "within", "during", "for")),
+    ((), _edge),
+    *((tuple(words.split()), _since) for words in ("after", "from", "since", "later than")),
+    *(
+        (tuple(words.split()), _until)
+        for words in ("before", "until", "within", "by", "up to", "in")
+    ),
+    (("at",), _moment),
+)
+"""What begins any other time, and how it is read after that."""
 
 
 def _span(cursor: Cursor, *between: str) -> Window | None:

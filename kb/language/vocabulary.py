@@ -11,7 +11,7 @@ from capar.model.par import Call, Step
 from kb.language.cursor import Cursor
 from kb.language.instruction import Instruction
 from kb.language.phrases import USUAL_PREPOSITION, built
-from kb.lexicon.english import Form, capital, lemmas, name_of, noun, past, the, words_of
+from kb.lexicon.english import Form, capital, lemmas, name_of, noun, the, words_of
 from kb.lexicon.links import PrimitiveWords, motion_senses, sense_links
 from kb.lexicon.wordnet import Synset, table, wordnet
 
@@ -82,15 +82,6 @@ class Vocabulary:
         return usual
 
     @cached_property
-    def verbs(self) -> Mapping[tuple[str, ...], str]:
-        """Verbs by the words that say them, in the present and the past."""
-        found: dict[tuple[str, ...], str] = {}
-        for each in self.entries:
-            found[tuple(each.verb.split())] = each.verb
-            found[tuple(past(each.verb).split())] = each.verb
-        return found
-
-    @cached_property
     def nouns(self) -> Mapping[tuple[str, ...], str] | None:
         """Objects by the words that name them; None where any noun will do.
 
@@ -135,8 +126,6 @@ def _spoken(names: Iterable[str]) -> dict[tuple[str, ...], str]:
 
 Phrases = Mapping[tuple[str, ...], str]
 """Values by the words that stand for them."""
-
-SUBORDINATORS = ("while", "when", "before", "after", "until", "without")
 
 
 @cache
@@ -312,14 +301,9 @@ def _belonging(pending: list[str]) -> set[str]:
     """The words of a verb; what only tells how it was done is left out."""
     if len(pending) > 1 and tuple(pending) in of_class("manner"):
         return {" ".join(pending)}
-    ignored = {words[0] for words in of_class("manner") if len(words) == 1} - {
-        "still",
-        "away",
-        "freely",
-        "about",
-        "around",
-    }
-    return {word for word in pending if word not in ignored and word not in {"to", "hands"}}
+    own = {"still", "away", "freely", "about", "around"}
+    manner = {words[0] for words in of_class("manner") if len(words) == 1} - own
+    return set(pending) - manner - {"to", "hands"}
 
 
 def _preposition(pending: list[str], *, first: bool) -> str:
