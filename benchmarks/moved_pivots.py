@@ -21,7 +21,7 @@ from scipy.spatial.transform import Rotation
 
 from capar.evaluation.metrics import report
 from capar.evaluation.plan import Plan, read_plan
-from capar.evaluation.scoring import Case, compare, read_case_labels
+from capar.evaluation.scoring import Case, compare
 from capar.model.capture import Capture, Stream
 from capar.pipelines.observation import observe
 from extractors.readers.bundle.capture_toml import read_capture
@@ -64,7 +64,7 @@ def scores(plan: Plan, draw: int, length_m: float) -> dict[str, dict[str, float]
         capture = read_capture(pair.capture)
         if draw:
             capture = moved_pivots(capture, rng, length_m)
-        labels = read_case_labels(pair, plan)
+        labels = plan.labels_of(pair)
         cases.append(Case(observe(capture), labels, capture.times, pair.name))
     groups = report(compare(cases, plan.mapping, groups=plan.groups))["groups"]
     return {

@@ -9,9 +9,7 @@ from motions import PERFORMERS, TALL_MAN, Performer
 from capar.model.capture import Capture, Role
 from capar.model.facts import LookingAt
 from capar.model.json_form import from_json, to_json
-from capar.pipelines.explanation import explained
 from capar.pipelines.observation import observe
-from capar_rules.engine.profiles import profile
 from kb.actionary import Actionary
 
 performer = pytest.mark.parametrize("performer", PERFORMERS, ids=lambda each: each.name)
@@ -72,22 +70,6 @@ def test_the_thesis_knows_no_looking() -> None:
     capture = motions.touch_cycle(TALL_MAN).capture
     seen = observe(acting(capture), rules="thesis")
     assert not [each for each in seen.segments if each.name == "LookAt" or each.looks]
-
-
-def test_an_explanation_says_where_one_looked_and_does_not_rest_on_it() -> None:
-    told = explained(motions.touch_cycle(TALL_MAN).capture, rules=profile())
-    explanation = told.explainer.explain(told.observation.segments[1])
-    sentences = [each.sentence for each in explanation.reason.walk()]
-    assert "the box was looked at throughout" in sentences
-    assert any(each.startswith("the head looked at the box from") for each in sentences)
-    assert "looked" not in explanation.summary
-
-
-def test_a_look_as_an_action_is_explained_by_the_look() -> None:
-    told = explained(acting(motions.touch_cycle(TALL_MAN).capture), rules=profile())
-    (look,) = [each for each in told.observation.segments if each.name == "LookAt"]
-    explanation = told.explainer.explain(look)
-    assert explanation.summary.startswith("LookAt because the box was looked at")
 
 
 def test_looks_survive_json_and_their_borders_are_words_of_the_actionary() -> None:

@@ -11,7 +11,6 @@ from motions.trials import Options
 from motions.whole import WHOLE, pinch, walk
 from test_uses import RECORDED
 
-import capar
 from capar.model.capture import Capture, Sensor, Stream, TagObject, TagType
 from capar.model.errors import CaptureError, UnknownNameError
 from capar.model.facts import Touching
@@ -76,12 +75,6 @@ def test_feet_that_are_lifted_and_set_down_where_they_were_do_not_walk() -> None
     assert not any("Walk" in (each.name, *each.general) for each in seen.segments)
 
 
-def test_a_step_of_a_walk_is_explained_by_the_other_foot() -> None:
-    (told,) = capar.explain(walk(motions.WOMAN).capture, "right_foot/3")
-    assert "one of at least three steps that both feet make in turn" in told.summary
-    assert "the left foot touched the floor" in told.summary
-
-
 @PEOPLE
 def test_heel_and_toes_are_one_foot_from_heel_strike_to_toe_off(
     performer: motions.Performer,
@@ -130,21 +123,6 @@ def test_fingers_that_touch_move_and_hold_a_thing_are_told_as_the_hand() -> None
     assert told["sensors"] == (
         "right_palm, right_thumb, right_index, right_middle, right_ring, right_pinky"
     )
-
-
-def test_the_part_that_stands_for_the_whole_keeps_its_name() -> None:
-    capture = pinch(motions.WOMAN, fingers=True).capture
-    sensors = [
-        replace(each, name="r_wrist", end_effector="hand") if each.name == "right_palm" else each
-        for each in capture.sensors
-    ]
-    (acting,) = grouped(replace(capture, sensors=tuple(sensors))).acting
-    assert (acting.name, acting.end_effector) == ("r_wrist", "hand")
-
-
-def test_one_sensor_alone_is_no_group() -> None:
-    capture = walk(motions.WOMAN).capture
-    assert grouped(capture) is capture
 
 
 def test_hands_of_two_people_are_not_grouped() -> None:

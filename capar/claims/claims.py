@@ -2,7 +2,7 @@
 
 import re
 import tomllib
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cache
@@ -24,118 +24,6 @@ from extractors.readers.bundle.capture_toml import read_capture, takes
 STEP = re.compile(r"([A-Z]\w*)(?:\(([^()]*)\))?")
 """A step of a claim, such as ``MoveObjTo(mug, head)``: its name, then its objects."""
 
-
-class ClaimError(CaparError):
-    """A claim that cannot be read, or that names what is not there."""
-
-
-class UnknownInClaimError(ClaimError, UnknownNameError):
-    """A name in a claim that nothing here bears."""
-
-
-@dataclass(frozen=True, slots=True)
-class Names:
-    """The names that exist in one capture, under one rule base."""
-
-    capture: str
-    primitives: frozenset[str]
-    ees: frozenset[str]
-    """End-effectors that act."""
-
-    kinds: frozenset[str]
-    """Their general types."""
-
-    objects: frozenset[str]
-    sensors: frozenset[str]
-    """Those with a line of sight."""
-
-    def ee(self, name: str) -> str:
-        """The name, if an end-effector of that name acts.
-
-        Raises:
-            UnknownInClaimError: None does; so too where another kind of name is wrong, below.
-        """
-        return self._one("acting end-effector", name, self.ees)
-
-    def object(self, name: str) -> str:
-        """The name, if an object has it."""
-        return self._one("object", name, self.objects)
-
-    def body(self, name: str) -> str:
-        """The name, if an object or an end-effector has it."""
-        return self._one("body", name, self.objects | self.ees)
-
-    def sensor(self, name: str) -> str:
-        """The name, if a sensor with a line of sight has it."""
-        return self._one("sensor that looks", name, self.sensors)
-
-    def pair(self, text: str) -> str:
-        """``both hands`` or ``both feet``, if any of that kind acts."""
-        kinds = {f"both {several}": kind for kind, several in BOTH.items()}
-        known = [each for each, kind in kinds.items() if kind in self.kinds]
-        return self._one("pair of acting end-effectors", text, known)
-
-    def step(self, text: str) -> str:
-        """The text, if it is a step whose primitive and objects there are."""
-        name, objects = parts(text)
-        self._one("primitive", name, self.primitives)
-        for thing in objects or ():
-            if thing != "_":
-                self._one("object", thing, self.objects | self.ees)
-        return text
-
-    def _one(self, kind: str, name: str, known: Collection[str]) -> str:
-        if name not in known:
-            raise UnknownInClaimError(kind, name, known, where=self.capture)
-        return name
-
-
-def parts(step: str) -> tuple[str, tuple[str, ...] | None]:
-    """The name of a step and its objects; None where it says nothing of objects.
-
-    Raises:
-        ClaimError: The text is no step.
-    """
-    found = STEP.fullmatch(step)
-    if found is None:
-        raise ClaimError(f"{step!r} is no step such as MoveObjTo(mug, head)")
-    if found[2] is None:
-        return found[1], None
-    return found[1], tuple(each.strip() for each in found[2].split(",") if each.strip())
-
-
-def names_of(
-    seen: Observation, *, rules: Profile | None = None, sensors: Iterable[str] = ()
-) -> Names:
-    """The names that claims about an observed capture may use.
-
-    Args:
-        seen: The observation.
-        rules: The rule base that it was observed with; None for what ships of its profile, and the
-            names that its segments bear.
-        sensors: Those with a line of sight, beside heads that act and those that are seen to look.
-    """
-    segments = {each for one in seen.segments for each in (one.name, *one.general)}
-    heads = {each.ee for each in seen.links if each.kind == "head"}
-    looking = {each.sensor for each in seen.facts if isinstance(each, LookingAt)}
-    return Names(
-        capture=seen.capture,
-        primitives=_primitives(rules or profile(seen.profile)) | segments | {UNKNOWN},
-        ees=frozenset(each.ee for each in seen.links),
-        kinds=frozenset(each.kind for each in seen.links),
-        objects=frozenset(each.name for each in seen.objects),
-        sensors=frozenset(looking | heads | set(sensors)),
-    )
-
-
-@cache
-def _primitives(rules: Profile) -> frozenset[str]:
-    return frozenset(each.name for each in rules_of(rules))
-
-
-Span = tuple[float, float]
-"""When something was, from one time to another [s]."""
-
 RELATIONS = ("begins before", "ends before", "before", "after", "while")
 
 HELP = (
@@ -146,10 +34,29 @@ HELP = (
     "HEAD looks at OBJECT; HEAD looks away from OBJECT"
 )
 
+EE, PAIR, OBJECT, BODY, SENSOR, PRIMITIVE = (
+    "acting end-effector", "pair of acting end-effectors", "object", "body", "sensor that looks",
+    "primitive",
+)  # fmt: skip
+"""Kinds of names in claims, as messages call them."""
+
+Names = Mapping[str, Collection[str]]
+"""By kind, the names that exist in one capture, under one rule base."""
+
+Span = tuple[float, float]
+"""When something was, from one time to another [s]."""
 
 _Kind = TypeVar("_Kind", bound=Fact)
 
 _NUMBER = r"\d+(?:\.\d*)?|\.\d+"
+
+
+class ClaimError(CaparError):
+    """A claim that cannot be read, or that names what is not there."""
+
+
+class UnknownInClaimError(ClaimError, UnknownNameError):
+    """A name in a claim that nothing here bears: the claim could never be true."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,10 +73,47 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class _Scene:
-    """What was observed, and the names that may be spoken of."""
+    """What was observed, and the names that claims may use."""
 
     seen: Observation
     names: Names
+
+    def named(self, kind: str, name: str) -> str:
+        """The name, if it exists.
+
+        Raises:
+            UnknownInClaimError: It does not.
+        """
+        if name not in self.names[kind]:
+            raise UnknownInClaimError(kind, name, self.names[kind], where=self.seen.capture)
+        return name
+
+    def step(self, text: str) -> str:
+        """The text, if it is a step whose primitive and objects there are."""
+        name, objects = _parts(text)
+        self.named(PRIMITIVE, name)
+        for thing in objects or ():
+            if thing not in {"_", *self.names[EE]}:
+                self.named(OBJECT, thing)
+        return text
+
+    def facts(self, kind: type[_Kind]) -> Iterator[_Kind]:
+        """The facts of a kind."""
+        return (fact for fact in self.seen.facts if isinstance(fact, kind))
+
+    def segments(self, ee: str) -> Sequence[Segment]:
+        """The segments of an end-effector."""
+        self.named(EE, ee)
+        return next(link.segments for link in self.seen.links if link.ee == ee)
+
+    def span(self, fact: Touching | LookingAt | Moving, *, ending: bool) -> Span:
+        """When a fact holds, or the moment of its end [s]."""
+        last_s = fact.last / self.seen.rate_hz
+        return (last_s if ending else fact.first / self.seen.rate_hz), last_s
+
+    def cut_off(self, last: int) -> bool:
+        """Whether something holds until the capture's end: nobody saw it end."""
+        return any(each.last == last for each in self.facts(Frames))
 
 
 def judge(claim: str, observation: Observation, *, names: Names | None = None) -> Verdict:
@@ -178,7 +122,7 @@ def judge(claim: str, observation: Observation, *, names: Names | None = None) -
     Args:
         claim: In words; ``HELP`` says in which.
         observation: The capture, observed.
-        names: What may be spoken of; None for what the observation itself shows.
+        names: What may be named; None for what the observation itself shows.
 
     Raises:
         ClaimError: The claim cannot be read, or names what there is not.
@@ -188,35 +132,73 @@ def judge(claim: str, observation: Observation, *, names: Names | None = None) -
     return Verdict(claim, observation.capture, holds, found)
 
 
-def _judged(claim: str, seen: _Scene) -> tuple[bool, str]:
-    sequence = re.fullmatch(r"(\w+):\s*(.+)", claim)
-    if sequence:
-        return _sequence(sequence[1], sequence[2], seen)
-    lasting = re.fullmatch(rf"(.+) lasts ({_NUMBER}) to ({_NUMBER}) s", claim)
-    if lasting:
-        spans = list(_event(lasting[1], seen))
+def names_of(
+    seen: Observation, *, rules: Profile | None = None, sensors: Iterable[str] = ()
+) -> Names:
+    """The names that claims about an observed capture may use, by kind.
+
+    Args:
+        seen: The observation.
+        rules: The rule base that it was observed with; None for what ships of its profile, and the
+            names that its segments bear.
+        sensors: Those with a line of sight, beside heads that act and those that are seen to look.
+    """
+    kinds = {each.kind for each in seen.links}
+    ees, objects = {each.ee for each in seen.links}, {each.name for each in seen.objects}
+    heads = {each.ee for each in seen.links if each.kind == "head"}
+    looking = {each.sensor for each in seen.facts if isinstance(each, LookingAt)}
+    segments = {each for one in seen.segments for each in (one.name, *one.general)}
+    return {
+        EE: ees,
+        PAIR: {f"both {several}" for kind, several in BOTH.items() if kind in kinds},
+        OBJECT: objects,
+        BODY: objects | ees,
+        SENSOR: looking | heads | set(sensors),
+        PRIMITIVE: _primitives(rules or profile(seen.profile)) | segments | {UNKNOWN},
+    }
+
+
+@cache
+def _primitives(rules: Profile) -> frozenset[str]:
+    return frozenset(each.name for each in rules_of(rules))
+
+
+def _parts(step: str) -> tuple[str, tuple[str, ...] | None]:
+    """The name of a step and its objects; None where it says nothing of objects.
+
+    Raises:
+        ClaimError: The text is no step.
+    """
+    found = STEP.fullmatch(step)
+    if found is None:
+        raise ClaimError(f"{step!r} is no step such as MoveObjTo(mug, head)")
+    if found[2] is None:
+        return found[1], None
+    return found[1], tuple(each.strip() for each in found[2].split(",") if each.strip())
+
+
+def _judged(claim: str, scene: _Scene) -> tuple[bool, str]:
+    if sequence := re.fullmatch(r"(\w+):\s*(.+)", claim):
+        return _sequence(sequence[1], sequence[2], scene)
+    if lasting := re.fullmatch(rf"(.+) lasts ({_NUMBER}) to ({_NUMBER}) s", claim):
+        spans = list(_event(lasting[1], scene))
         low, high = float(lasting[2]), float(lasting[3])
         if low > high:
             raise ClaimError(
                 f"nothing lasts {lasting[2]} to {lasting[3]} s; the shorter time first"
             )
-        times = [last - first for first, last in spans]
-        return bool(times) and all(low <= each <= high for each in times), _told(spans)
+        return bool(spans) and all(low <= b - a <= high for a, b in spans), _shown(spans)
     if claim.startswith("no "):
-        spans = list(_event(claim[3:], seen))
-        return not spans, _told(spans)
+        spans = list(_event(claim[3:], scene))
+        return not spans, _shown(spans)
     for relation in RELATIONS:
         first, word, second = claim.partition(f" {relation} ")
         if word:
-            return _related(first, relation, second, seen)
-    spans = list(_event(claim, seen))
-    return bool(spans), _told(spans)
-
-
-def _related(first: str, relation: str, second: str, seen: _Scene) -> tuple[bool, str]:
-    one, other = list(_event(first, seen)), list(_event(second, seen))
-    holds = any(_stand(each, relation, every) for each in one for every in other)
-    return holds, f"{first}: {_told(one)}; {second}: {_told(other)}"
+            one, other = list(_event(first, scene)), list(_event(second, scene))
+            holds = any(_stand(each, relation, every) for each in one for every in other)
+            return holds, f"{first}: {_shown(one)}; {second}: {_shown(other)}"
+    spans = list(_event(claim, scene))
+    return bool(spans), _shown(spans)
 
 
 def _stand(one: Span, relation: str, other: Span) -> bool:
@@ -229,13 +211,13 @@ def _stand(one: Span, relation: str, other: Span) -> bool:
     }[relation]
 
 
-def _sequence(ee: str, names: str, seen: _Scene) -> tuple[bool, str]:
+def _sequence(ee: str, names: str, scene: _Scene) -> tuple[bool, str]:
     """The whole sequence of an end-effector; ... stands for any steps."""
-    segments = _of(ee, seen)
+    segments = scene.segments(ee)
     wanted = [each.strip() for each in re.split(r",\s*(?![^()]*\))", names)]
     for step in wanted:
         if step != "...":
-            seen.names.step(step)
+            scene.step(step)
     found = ", ".join(segment.name for segment in segments)
     return _follows(wanted, list(segments)), f"{ee}: {found}"
 
@@ -250,71 +232,67 @@ def _follows(wanted: list[str], segments: list[Segment]) -> bool:
 
 def _fits(segment: Segment, text: str) -> bool:
     """Whether a segment is of that name, or of one that specialises it, with those objects."""
-    name, objects = parts(text)
+    name, objects = _parts(text)
     if name not in (segment.name, *segment.general):
         return False
-    if objects is None:
-        return True
-    return len(objects) <= len(segment.objects) and all(
-        each in ("_", found) for each, found in zip(objects, segment.objects, strict=False)
+    pairs = zip(objects or (), segment.objects, strict=False)
+    return len(objects or ()) <= len(segment.objects) and all(
+        each in ("_", found) for each, found in pairs
     )
 
 
-def _event(text: str, seen: _Scene) -> Iterator[Span]:
+def _event(text: str, scene: _Scene) -> Iterator[Span]:
     """When an event is."""
     for pattern, spans in _EVENTS:
-        found = re.fullmatch(pattern, text)
-        if found:
-            return spans(found, seen)
+        if found := re.fullmatch(pattern, text):
+            return spans(found, scene)
     raise ClaimError(f"{text!r} is no event; {HELP}")
 
 
-def _looks(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
-    pair = seen.names.sensor(found[1]), seen.names.object(found[3])
+def _looks(found: re.Match[str], scene: _Scene) -> Iterator[Span]:
+    pair = scene.named(SENSOR, found[1]), scene.named(OBJECT, found[3])
     ending = found[2] != "at"
-    for look in _facts(seen, LookingAt):
-        if (look.sensor, look.object) == pair and not (ending and _cut_off(look.last, seen)):
-            yield _when(look.first, look.last, seen, ending=ending)
+    for look in scene.facts(LookingAt):
+        if (look.sensor, look.object) == pair and not (ending and scene.cut_off(look.last)):
+            yield scene.span(look, ending=ending)
 
 
-def _meets(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
-    pair = {seen.names.body(found[1]), seen.names.body(found[3])}
+def _meets(found: re.Match[str], scene: _Scene) -> Iterator[Span]:
+    pair = {scene.named(BODY, found[1]), scene.named(BODY, found[3])}
     if len(pair) == 1:
         raise ClaimError(f"{found[0]!r}: nothing touches itself")
     ending = found[2] != "touches"
     spans = {
-        _when(each.first, each.last, seen, ending=ending)
-        for each in _facts(seen, Touching)
-        if {each.body, each.other} == pair and not (ending and _cut_off(each.last, seen))
+        scene.span(each, ending=ending)
+        for each in scene.facts(Touching)
+        if {each.body, each.other} == pair and not (ending and scene.cut_off(each.last))
     }
     return iter(sorted(spans))
 
 
-def _moves(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
-    name = seen.names.object(found[1])
-    for motion in _facts(seen, Moving):
-        if motion.object == name:
-            yield _when(motion.first, motion.last, seen, ending=False)
+def _moves(found: re.Match[str], scene: _Scene) -> Iterator[Span]:
+    name = scene.named(OBJECT, found[1])
+    motions = (each for each in scene.facts(Moving) if each.object == name)
+    return (scene.span(each, ending=False) for each in motions)
 
 
-def _step(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
-    segments, step = _of(found[1], seen), seen.names.step(found[2])
-    for segment in segments:
-        if _fits(segment, step):
-            yield segment.start_s, segment.end_s
+def _step(found: re.Match[str], scene: _Scene) -> Iterator[Span]:
+    segments, step = scene.segments(found[1]), scene.step(found[2])
+    return ((each.start_s, each.end_s) for each in segments if _fits(each, step))
 
 
-def _together(found: re.Match[str], seen: _Scene) -> Iterator[Span]:
+def _together(found: re.Match[str], scene: _Scene) -> Iterator[Span]:
     """When several end-effectors do a step as one action."""
-    both = found[1].startswith("both ")
-    who = [seen.names.pair(found[1])] if both else [*map(seen.names.ee, found[1].split(" and "))]
+    both, seen = found[1].startswith("both "), scene.seen
+    named = [found[1]] if both else found[1].split(" and ")
+    who = [scene.named(PAIR if both else EE, each) for each in named]
     if len(set(who)) < len(who):
         raise ClaimError(f"{found[0]!r} names an end-effector twice")
-    step = seen.names.step(found[2])
-    segments = {(segment.ee, segment.index): segment for segment in seen.seen.segments}
-    for joint in seen.seen.joint:
+    step = scene.step(found[2])
+    segments = {(segment.ee, segment.index): segment for segment in seen.segments}
+    for joint in seen.joint:
         own = [segments[each] for each in zip(joint.ees, joint.segments, strict=True)]
-        acting = [seen.seen.who(joint)] if both else joint.who
+        acting = [seen.who(joint)] if both else joint.who
         if sorted(acting) == sorted(who) and all(_fits(each, step) for each in own):
             yield joint.start_s, joint.end_s
 
@@ -328,26 +306,7 @@ _EVENTS: tuple[tuple[str, Callable[[re.Match[str], _Scene], Iterator[Span]]], ..
 )
 
 
-def _facts(seen: _Scene, kind: type[_Kind]) -> Iterator[_Kind]:
-    return (fact for fact in seen.seen.facts if isinstance(fact, kind))
-
-
-def _when(first: int, last: int, seen: _Scene, *, ending: bool) -> Span:
-    rate = seen.seen.rate_hz
-    return (last / rate, last / rate) if ending else (first / rate, last / rate)
-
-
-def _cut_off(last: int, seen: _Scene) -> bool:
-    """Whether something lasts until the capture's end: nobody saw it end."""
-    return any(each.last == last for each in _facts(seen, Frames))
-
-
-def _of(ee: str, seen: _Scene) -> Sequence[Segment]:
-    seen.names.ee(ee)
-    return next(link.segments for link in seen.seen.links if link.ee == ee)
-
-
-def _told(spans: Sequence[Span]) -> str:
+def _shown(spans: Sequence[Span]) -> str:
     return ", ".join(f"{first:.2f} to {last:.2f} s" for first, last in spans) or "never"
 
 

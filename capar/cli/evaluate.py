@@ -90,9 +90,9 @@ def evaluate(
     seen and found.
     """
     from capar.evaluation.metrics import report
-    from capar.evaluation.pictures import draw_evaluation, picture_paths
     from capar.evaluation.plan import Plan, read_mapping, read_pairs, read_plan
-    from capar.evaluation.running import evaluate as carry_out
+    from capar.evaluation.scoring import draw_evaluation, picture_paths
+    from capar.evaluation.scoring import evaluate as carry_out
 
     base = rule_base(profile, rules, actionary, steady=steady)
     if len(places) == 1 and Path(places[0]).suffix == ".toml":
@@ -117,7 +117,7 @@ def evaluate(
         for path in picture_paths(plot, [each.name for each in plan.pairs]).values():
             check_writable(path, suffixes=SUFFIXES)
     found = carry_out(plan, rules=base, progress=progress("observing"))
-    paths = picture_paths(plot, found.cases) if plot else {}
+    paths = picture_paths(plot, [each.name for each in found.captures]) if plot else {}
     for capture in found.captures if plot else ():
         with written(paths[capture.name]) as draft:
             draw_evaluation(found, capture, path=draft)

@@ -269,139 +269,10 @@ def _after_last(times: Float[np.ndarray, "frames"]) -> float:
 BOMS = ((b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"), (b"\xef\xbb\xbf", "utf-8-sig"))
 """How a file begins that says its encoding; Praat writes UTF-16 where a text needs it."""
 
-INTERVALS = "IntervalTier"
-
-
-@dataclass(frozen=True, slots=True)
-class Annotation:
-    """One annotated interval."""
-
-    tier: str
-    start_s: float
-    end_s: float
-    text: str
-    where: str
-    """File and line, or the tier and the interval's number where lines are not told."""
-
-
-def read_elan(path: Path) -> tuple[Annotation, ...]:
-    """The time-aligned annotations of every tier of an ELAN file; tiers of references have none.
-
-    Raises:
-        FileError: It is no ELAN file, or an annotation has no time.
-    """
-    from defusedxml import DefusedXmlException
-    from defusedxml.ElementTree import ParseError, fromstring
-    from pympi import Eaf
-
-    text = read_bytes(path)
-    try:
-        root = fromstring(text)
-    except ParseError as error:
-        raise FileError(f"{path}:{error.position[0]}", f"is no XML: {error}.", _ELAN) from None
-    except (DefusedXmlException, ValueError) as error:
-        raise FileError(path, f"is refused: {error!r}.", _ELAN) from None
-    if root.tag != "ANNOTATION_DOCUMENT":
-        raise FileError(path, f"holds <{root.tag}>.", _ELAN)
-    file = _quietly(path, lambda: Eaf(str(path), suppress_version_warning=True), _ELAN)
-    lines = _lines(text.decode("utf-8", "replace"), r'ANNOTATION_ID="([^"]*)"')
-    return tuple(
-        _aligned(file, path, tier, name, lines)
-        for tier, (aligned, *_) in file.tiers.items()
-        for name in aligned
-    )
-
-
-def read_praat(path: Path) -> tuple[Annotation, ...]:
-    """The intervals with a text, of every interval tier of a TextGrid.
-
-    Raises:
-        FileError: It is no TextGrid.
-    """
-    from pympi import TextGrid
-
-    content = read_bytes(path)
-    codec = next((name for bom, name in BOMS if content.startswith(bom)), "utf-8")
-    file = _quietly(path, lambda: TextGrid(str(path), codec=codec), _PRAAT)
-    tiers = [tier for tier in file.get_tiers() if tier.tier_type == INTERVALS]
-    lines = _interval_lines(content.decode(codec, "replace"))
-    return tuple(
-        Annotation(tier.name, start, end, text, _place(path, tier.name, index, lines))
-        for tier in tiers
-        for index, (start, end, text) in enumerate(tier.get_intervals(), 1)
-        if text.strip()
-    )
-
-
-_ELAN = "Give an ELAN annotation file (.eaf), as ELAN saves it."
-_PRAAT = "Give a Praat TextGrid, as Praat saves it."
-
-
-def _quietly(path: Path, read: Callable[[], Any], remedy: str) -> Any:
-    """What pympi reads; it raises bare exceptions of many kinds and may write to the terminal."""
-    try:
-        with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
-            warnings.simplefilter("ignore")
-            return read()
-    except Exception as error:  # pympi raises Exception itself, and whatever bytes make of it
-        kind = type(error).__name__
-        raise FileError(path, f"cannot be read to its end ({kind}: {error}).", remedy) from None
-
-
-def _aligned(file: Any, path: Path, tier: str, name: str, lines: dict[str, int]) -> Annotation:
-    first, last, text, _ = file.tiers[tier][0][name]
-    where = f"{path}:{lines[name]}" if name in lines else f"{path}: tier {tier!r}, {name}"
-    times = [file.timeslots.get(each) for each in (first, last)]
-    if None in times:
-        raise FileError(
-            where, f"annotation {text!r} on tier {tier!r} has no time of its own.",
-            "Align its start and its end to the time line in ELAN.",
-        )  # fmt: skip
-    start, end = (float(each) / 1000.0 for each in times)
-    return Annotation(tier, start, end, text, where)
-
-
-def _lines(text: str, pattern: str) -> dict[str, int]:
-    """The line of each name that a pattern finds."""
-    return {
-        match.group(1): text.count("\n", 0, match.start()) + 1
-        for match in re.finditer(pattern, text)
-    }
-
-
-def _interval_lines(text: str) -> dict[tuple[str, int], int]:
-    """The line of each interval of a long TextGrid, by tier and number; a short one has none."""
-    out: dict[tuple[str, int], int] = {}
-    tier = ""
-    for number, line in enumerate(text.splitlines(), 1):
-        if match := re.match(r'\s*name = "(.*)"\s*$', line):
-            tier = match.group(1).replace('""', '"')
-        elif match := re.match(r"\s*intervals \[(\d+)\]", line):
-            out[tier, int(match.group(1))] = number
-    return out
-
-
-def _place(path: Path, tier: str, index: int, lines: dict[tuple[str, int], int]) -> str:
-    line = lines.get((tier, index))
-    return f"{path}:{line}" if line else f"{path}: tier {tier!r}, interval {index}"
-
-
 BIMACTS = (
-    "idle",
-    "approach",
-    "retreat",
-    "lift",
-    "place",
-    "hold",
-    "pour",
-    "cut",
-    "hammer",
-    "saw",
-    "stir",
-    "screw",
-    "drink",
-    "wipe",
-)
+    "idle", "approach", "retreat", "lift", "place", "hold", "pour", "cut", "hammer", "saw", "stir",
+    "screw", "drink", "wipe",
+)  # fmt: skip
 """Names of the action numbers of the KIT Bimanual Actions Dataset."""
 
 UNNAMED = {"", "None", "none", "null"}
@@ -437,6 +308,10 @@ TIMES = (("start_s", "end_s"), ("start_frame", "end_frame"))
 """The columns of times, in seconds or in frames."""
 
 
+Annotation = tuple[str, float, float, str, str]
+"""Tier, start and end [s], text, and file and line (or tier and number) of an annotation."""
+
+
 def read_labels(
     path: Path,
     kind: Kind = Kind.ACTIONS,
@@ -457,9 +332,9 @@ def read_labels(
     """
     suffix = path.suffix.lower()
     if suffix == ".textgrid":
-        marks, in_frames = _annotated(path, read_praat(path), kind), False
+        marks, in_frames = _annotated(read_praat(path), kind), False
     elif suffix == ".eaf":
-        marks, in_frames = _annotated(path, read_elan(path), kind), False
+        marks, in_frames = _annotated(read_elan(path), kind), False
     else:
         marks, in_frames = _text(path, read_text(path), kind)
     return agreed(path, marks, in_frames=in_frames, kind=kind, contradictions=contradictions)
@@ -583,23 +458,21 @@ def _number(place: str, text: str) -> float:
     return value
 
 
-def _annotated(path: Path, found: Sequence[Annotation], kind: Kind) -> list[Label]:
+def _annotated(found: Sequence[Annotation], kind: Kind) -> list[Label]:
     """Marks from tiers: a tier is who acts, a text what is done, touched or carried."""
     out = []
-    for annotation in found:
-        if not annotation.text.strip():
-            continue
-        first, _, second = annotation.text.strip().partition(" ")
+    for tier, start, end, words, where in found:
+        text = words.strip()
+        first, _, second = text.partition(" ")
         label, thing = {
-            Kind.ACTIONS: (annotation.text.strip(), ""),
-            Kind.CONTACTS: ("contact", annotation.text.strip()),
-            Kind.CARRIES: ("carry", annotation.text.strip()),
+            Kind.ACTIONS: (text, ""),
+            Kind.CONTACTS: ("contact", text),
+            Kind.CARRIES: ("carry", text),
             Kind.EVENTS: (first, second.strip()),
         }[kind]
-        link = "" if kind is Kind.CARRIES else annotation.tier
-        out.append(
-            Label(link, annotation.start_s, annotation.end_s, label, thing, where=annotation.where)
-        )
+        link = "" if kind is Kind.CARRIES else tier
+        if text:
+            out.append(Label(link, start, end, label, thing, where=where))
     return out
 
 
@@ -632,3 +505,85 @@ def _alternating(link: str, marks: list[Any], where: str) -> list[Label]:
             label = BIMACTS[number]
             out.append(Label(link, float(start), float(end), label, str(thing or ""), where=where))
     return out
+
+
+def read_elan(path: Path) -> list[Annotation]:
+    """The time-aligned annotations of every tier of an ELAN file; tiers of references have none.
+
+    Raises:
+        FileError: It is no ELAN file, or an annotation has no time.
+    """
+    from defusedxml import DefusedXmlException
+    from defusedxml.ElementTree import ParseError, fromstring
+    from pympi import Eaf
+
+    remedy = "Give an ELAN annotation file (.eaf), as ELAN saves it."
+    text = read_bytes(path)
+    try:
+        root = fromstring(text)
+    except ParseError as error:
+        raise FileError(f"{path}:{error.position[0]}", f"is no XML: {error}.", remedy) from None
+    except (DefusedXmlException, ValueError) as error:
+        raise FileError(path, f"is refused: {error!r}.", remedy) from None
+    if root.tag != "ANNOTATION_DOCUMENT":
+        raise FileError(path, f"holds <{root.tag}>.", remedy)
+    file = _quietly(path, lambda: Eaf(str(path), suppress_version_warning=True), remedy)
+    decoded = text.decode("utf-8", "replace")
+    lines = {
+        match.group(1): decoded.count("\n", 0, match.start()) + 1
+        for match in re.finditer(r'ANNOTATION_ID="([^"]*)"', decoded)
+    }
+    out: list[Annotation] = []
+    for tier, (aligned, *_) in file.tiers.items():
+        for name, (first, last, words, _) in aligned.items():
+            where = f"{path}:{lines[name]}" if name in lines else f"{path}: tier {tier!r}, {name}"
+            times = [file.timeslots.get(each) for each in (first, last)]
+            if None in times:
+                raise FileError(
+                    where, f"annotation {words!r} on tier {tier!r} has no time of its own.",
+                    "Align its start and its end to the time line in ELAN.",
+                )  # fmt: skip
+            start, end = (float(each) / 1000.0 for each in times)
+            out.append((tier, start, end, words, where))
+    return out
+
+
+def read_praat(path: Path) -> list[Annotation]:
+    """The intervals with a text, of every interval tier of a TextGrid.
+
+    Raises:
+        FileError: It is no TextGrid.
+    """
+    from pympi import TextGrid
+
+    content = read_bytes(path)
+    codec = next((name for bom, name in BOMS if content.startswith(bom)), "utf-8")
+    remedy = "Give a Praat TextGrid, as Praat saves it."
+    file = _quietly(path, lambda: TextGrid(str(path), codec=codec), remedy)
+    lines: dict[tuple[str, int], int] = {}
+    inside = ""
+    for number, line in enumerate(content.decode(codec, "replace").splitlines(), 1):
+        if match := re.match(r'\s*name = "(.*)"\s*$', line):
+            inside = match.group(1).replace('""', '"')
+        elif match := re.match(r"\s*intervals \[(\d+)\]", line):
+            lines[inside, int(match.group(1))] = number
+    out: list[Annotation] = []
+    for tier in file.get_tiers():
+        if tier.tier_type == "IntervalTier":
+            for index, (start, end, text) in enumerate(tier.get_intervals(), 1):
+                place = lines.get((tier.name, index))
+                where = f":{place}" if place else f": tier {tier.name!r}, interval {index}"
+                if text.strip():
+                    out.append((tier.name, start, end, text, f"{path}{where}"))
+    return out
+
+
+def _quietly(path: Path, read: Callable[[], Any], remedy: str) -> Any:
+    """What pympi reads; it raises bare exceptions of many kinds and may write to the terminal."""
+    try:
+        with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
+            warnings.simplefilter("ignore")
+            return read()
+    except Exception as error:  # pympi raises Exception itself, and whatever bytes make of it
+        kind = type(error).__name__
+        raise FileError(path, f"cannot be read to its end ({kind}: {error}).", remedy) from None

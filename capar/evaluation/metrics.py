@@ -10,10 +10,10 @@ F1 is computed; edit scores are averaged over sequences. All scores are percenta
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from functools import reduce
 from operator import add
-from typing import Any, Protocol, Self
+from typing import Any, Self
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -37,7 +37,7 @@ NOTHING = "(nothing)"
 
 @dataclass(frozen=True, slots=True, order=True)
 class Interval:
-    """A named stretch of time, half-open: [start, end)."""
+    """A named interval of time, half-open: [start, end)."""
 
     start_s: float
     end_s: float
@@ -45,7 +45,21 @@ class Interval:
 
 
 @dataclass(frozen=True)
-class Tally:
+class Counts:
+    """What is counted of one part of a capture; counts of several add up before they are scored."""
+
+    def __add__(self, other: Self) -> Self:
+        """Both together, field by field."""
+        pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+        return type(self)(*(one + two for one, two in pairs))
+
+    def scores(self) -> dict[str, Any]:
+        """The scores that follow, as plain values."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class Tally(Counts):
     """What is counted of one sequence, or of several together."""
 
     confusion: Counter[tuple[str, str]] = field(default_factory=Counter)
@@ -74,10 +88,6 @@ class Tally:
 
     inserted: Counter[str] = field(default_factory=Counter)
     """Predicted segments without a match, by label."""
-
-    def __add__(self, other: "Tally") -> "Tally":
-        """Both together."""
-        return pooled((self, other))
 
     def scores(self) -> dict[str, Any]:
         """The scores that follow from counts: percentages, and errors in milliseconds."""
@@ -130,22 +140,6 @@ def tally(
         offsets_s=tuple(guess[g].end_s - truth[t].end_s for t, g in matched),
         missed=Counter(e.label for i, e in enumerate(truth) if i not in taken_true),
         inserted=Counter(e.label for i, e in enumerate(guess) if i not in taken_guess),
-    )
-
-
-def pooled(tallies: Iterable[Tally]) -> Tally:
-    """Several tallies as one."""
-    every = list(tallies)
-    return Tally(
-        confusion=sum((each.confusion for each in every), Counter()),
-        hits=sum((each.hits for each in every), Counter()),
-        predicted=sum(each.predicted for each in every),
-        true=sum(each.true for each in every),
-        edits=tuple(score for each in every for score in each.edits),
-        onsets_s=tuple(error for each in every for error in each.onsets_s),
-        offsets_s=tuple(error for each in every for error in each.offsets_s),
-        missed=sum((each.missed for each in every), Counter()),
-        inserted=sum((each.inserted for each in every), Counter()),
     )
 
 
@@ -272,6 +266,11 @@ def _overlap(one: Interval, other: Interval) -> float:
     return max(common, 0.0) / whole
 
 
+def percent(part: int, whole: int) -> float | None:
+    """A share [%]; None of nothing."""
+    return rounded(100.0 * part / whole) if whole else None
+
+
 @dataclass(frozen=True)
 class Channel:
     """What one link does, one pair of bodies, or one object's carries: at most one at a time."""
@@ -291,7 +290,7 @@ class Channel:
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A stretch of time in which something else was found than is labelled."""
+    """An interval in which something else was found than is labelled."""
 
     capture: str
     channel: str
@@ -299,49 +298,32 @@ class Difference:
     end_s: float
     true: str
     found: str
-    said: str
+    segments: str
     """The segments there, as they are printed: number and name."""
-
-    @property
-    def length_s(self) -> float:
-        """How long it lasts [s]."""
-        return self.end_s - self.start_s
 
 
 def differences(
     capture: str, channels: Iterable[Channel], times: Float[np.ndarray, "frames"]
 ) -> tuple[Difference, ...]:
-    """Every stretch of a capture in which a channel differs from its labels, in order of time."""
+    """Every interval of a capture in which a channel differs from its labels, in order of time."""
     out: list[Difference] = []
     for channel in channels:
         true, found = (
             np.array([each or NOTHING for each in frame_labels(marks, times)], dtype=object)
             for marks in (channel.true, channel.found)
         )
-        wrong = (true != found) & counted(channel, times)
-        pairs = sorted(set(zip(true[wrong], found[wrong], strict=True)))
-        for one, other in pairs:
+        counted = channel.silent | (true != NOTHING)
+        wrong = (true != found) & counted & ~inside(channel.open, times)
+        for one, other in sorted(set(zip(true[wrong], found[wrong], strict=True))):
             for first, last in runs(wrong & (true == one) & (found == other)):
-                end_s = float(times[min(last + 1, len(times) - 1)])
-                start_s = float(times[first])
-                said = _said(channel.segments, start_s, end_s)
-                out.append(Difference(capture, channel.name, start_s, end_s, one, other, said))
+                start_s, end_s = float(times[first]), float(times[min(last + 1, len(times) - 1)])
+                there = ", ".join(
+                    f"{each.index} {each.name}"
+                    for each in channel.segments
+                    if each.start_s < end_s - SAME_S and each.end_s > start_s + SAME_S
+                )
+                out.append(Difference(capture, channel.name, start_s, end_s, one, other, there))
     return tuple(sorted(out, key=lambda each: (each.start_s, each.channel)))
-
-
-def worst(found: Iterable[Difference], *, most: int) -> tuple[Difference, ...]:
-    """The longest differences, longest first."""
-    ranked = sorted(found, key=lambda each: (-each.length_s, each.capture, each.channel,
-                                             each.start_s))  # fmt: skip
-    return tuple(ranked[:most])
-
-
-def counted(channel: Channel, times: Float[np.ndarray, "frames"]) -> Bool[np.ndarray, "frames"]:
-    """Whether each frame counts."""
-    out = np.full(len(times), channel.silent)
-    if not channel.silent:
-        out |= np.array([bool(each) for each in frame_labels(channel.true, times)], dtype=bool)
-    return np.asarray(out & ~inside(channel.open, times))
 
 
 def inside(
@@ -352,13 +334,6 @@ def inside(
     for interval in intervals:
         out |= within(interval, times)
     return out
-
-
-def _said(segments: Sequence[Segment], start_s: float, end_s: float) -> str:
-    there = [
-        each for each in segments if each.start_s < end_s - SAME_S and each.end_s > start_s + SAME_S
-    ]
-    return ", ".join(f"{each.index} {each.name}" for each in there)
 
 
 PARTS = {
@@ -374,21 +349,9 @@ WORST = 20
 """So many differences are listed."""
 
 
-class Counts(Protocol):
-    """What is counted of one part of a capture; counts of several add up before they are scored."""
-
-    def __add__(self, other: Self) -> Self:
-        """Both together."""
-        ...
-
-    def scores(self) -> dict[str, Any]:
-        """The scores that follow, as plain values."""
-        ...
-
-
 @dataclass(frozen=True)
 class Scored:
-    """One capture held against its labels."""
+    """One capture compared with its labels."""
 
     name: str
     times: Float[np.ndarray, "frames"]
@@ -409,7 +372,7 @@ class Scored:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Captures held against their labels."""
+    """Captures compared with their labels."""
 
     kind: Kind
     captures: tuple[Scored, ...]
@@ -420,65 +383,42 @@ class Evaluation:
     """What is odd about labels and mapping."""
 
     @property
-    def cases(self) -> tuple[str, ...]:
-        """Names of the captures."""
-        return tuple(each.name for each in self.captures)
-
-    @property
-    def links(self) -> Mapping[str, Any]:
+    def parts(self) -> dict[str, Any]:
         """Counts of each part, pooled over captures."""
         return _parts(self.captures)
-
-    @property
-    def whole(self) -> Any:
-        """Counts of everything together."""
-        return _whole(self.captures)
 
     @property
     def unlabelled(self) -> tuple[str, ...]:
         """Parts that were observed and bear no labels in any of the files: not counted."""
         found = {name for each in self.captures for name in each.unlabelled}
-        return tuple(sorted(found - set(self.links)))
-
-    def differences(self) -> tuple[Difference, ...]:
-        """Every stretch in which something else was found than is labelled."""
-        return tuple(
-            found
-            for each in self.captures
-            for found in differences(each.name, each.channels, each.times)
-        )
+        return tuple(sorted(found - set(self.parts)))
 
 
 def report(evaluation: Evaluation) -> dict[str, Any]:
     """An evaluation as plain values, for JSON."""
-    part = PARTS[evaluation.kind]
+    part, captures = PARTS[evaluation.kind], evaluation.captures
+    wrong = [one for each in captures for one in differences(each.name, each.channels, each.times)]
+    wrong.sort(key=lambda one: (one.start_s - one.end_s, one.capture, one.channel, one.start_s))
+    groups = {
+        name: [each for each in captures if each.name in members]
+        for name, members in evaluation.groups.items()
+    }
     return {
         "kind": str(evaluation.kind),
-        "captures": list(evaluation.cases),
+        "captures": [each.name for each in captures],
         "matched_at_percent": MATCH_AT,
-        **_scores(part, evaluation.captures),
+        **_scores(part, captures),
         "groups": {
-            name: {
-                "captures": list(members),
-                **_scores(part, [each for each in evaluation.captures if each.name in members]),
-            }
-            for name, members in evaluation.groups.items()
+            name: {"captures": list(evaluation.groups[name]), **_scores(part, own)}
+            for name, own in groups.items()
         },
-        "by_capture": {each.name: _scores(part, [each]) for each in evaluation.captures},
+        "by_capture": {each.name: _scores(part, [each]) for each in captures},
         "worst": [
-            {
-                "capture": each.capture,
-                "channel": each.channel,
-                "start_s": round(each.start_s, 3),
-                "end_s": round(each.end_s, 3),
-                "true": each.true,
-                "found": each.found,
-                "segments": each.said,
-            }
-            for each in worst(evaluation.differences(), most=WORST)
+            {**asdict(one), "start_s": round(one.start_s, 3), "end_s": round(one.end_s, 3)}
+            for one in wrong[:WORST]
         ],
         f"unlabelled_{part}": list(evaluation.unlabelled),
-        "notices": [*evaluation.notices, *(n for c in evaluation.captures for n in c.notices)],
+        "notices": [*evaluation.notices, *(n for c in captures for n in c.notices)],
     }
 
 
@@ -490,7 +430,7 @@ def summed(counts: Iterable[Any]) -> Any:
 def _scores(part: str, captures: Sequence[Scored]) -> dict[str, Any]:
     return {
         part: {name: counts.scores() for name, counts in _parts(captures).items()},
-        "all": _whole(captures).scores(),
+        "all": summed(each.whole for each in captures).scores(),
     }
 
 
@@ -499,7 +439,3 @@ def _parts(captures: Sequence[Scored]) -> dict[str, Any]:
     return {
         name: summed(each.parts[name] for each in captures if name in each.parts) for name in names
     }
-
-
-def _whole(captures: Sequence[Scored]) -> Any:
-    return summed(each.whole for each in captures)

@@ -1,27 +1,26 @@
 """Carries and containers: what happens to objects, compared with labels or with their own poses."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
-from capar.evaluation.labels import Kind, Label, Labels, check_known, check_span
+from capar.evaluation.labels import Label, Labels, check_known, check_span
 from capar.evaluation.metrics import (
     SAME_S,
     Channel,
-    Evaluation,
+    Counts,
     Interval,
     Scored,
     errors_ms,
     rounded,
     summed,
 )
-from capar.evaluation.plan import CarryOptions, Pair, Plan, Progress
-from capar.evaluation.scoring import read_case_labels
-from capar.model.capture import Capture, PivotContact, Sensor, Shape, Stream, TagObject, TagType
+from capar.evaluation.plan import CarryOptions, Pair, Plan
+from capar.model.capture import Capture, PivotContact, Shape, Stream, TagObject, TagType
 from capar.model.errors import UnknownNameError
 from capar.model.observation import Observation, Segment
 from capar.pipelines.observation import observe
@@ -35,113 +34,13 @@ from extractors.readers.bundle.capture_toml import (
 )
 from extractors.readers.names import constant_name
 
-if TYPE_CHECKING:
-    from extractors.readers.bundle.bodies import WorldRecording
-    from extractors.readers.schema.capture import CaptureFile
-
+CARRY, INTO = "carry", "into"
 
 RATE_HZ = 50.0
 """The clock where the bundle states none [Hz]."""
 
 TOUCHES_M = 0.005
 """The hand is where the object is: their distance is zero, and anything above it will do [m]."""
-
-
-@dataclass(frozen=True)
-class CarryCapture:
-    """One carried object, at rest before and after, and when the recording has it."""
-
-    object: str
-    capture: Capture
-    start_s: float
-    """Its first recorded pose, on the capture's clock [s]."""
-
-    end_s: float
-    """Its last one [s]."""
-
-
-def carry_captures(place: str, options: CarryOptions) -> Iterator[CarryCapture]:
-    """A capture for each object that a recording has while it is carried, in order of time.
-
-    Beside the object there are the bundle's fixed objects. An object that the bundle leaves out,
-    for want of a shape, is there without one.
-
-    Raises:
-        CaparError: The bundle has a fault, or no such file or sensor.
-    """
-    document, _ = open_bundle(place)
-    files = read_files(document)
-    if options.presence_of not in files:
-        raise UnknownNameError("file", options.presence_of, files, where=f"{document.file_path}")
-    scene = read_capture(place)
-    names = dict(_names(document, files, options.presence_of))
-    recorded = files[options.presence_of].bodies
-    for body in sorted(names, key=lambda each: float(recorded[each].times[0])):
-        yield _carry(scene, names[body], recorded[body], options, document.rate_hz or RATE_HZ)
-
-
-def _names(
-    document: "CaptureFile", files: "dict[str, WorldRecording]", file: str
-) -> Iterator[tuple[str, str]]:
-    """Each carried body with its object's name; of one that is left out, with its own."""
-    entries = [each for each in document.objects_from if each.file == file]
-    for entry in entries:
-        objects, notices = many_objects(entry, files)
-        yield from ((str(each.body), each.name) for each in objects)
-        left_out = [body for each in notices for body in each.bodies]
-        for index, body in enumerate(left_out, 1):
-            kind = constant_name(body.partition("(")[0])
-            yield body, f"{kind}_{index}"
-
-
-def _carry(
-    scene: Capture, name: str, recorded: Stream, options: CarryOptions, rate_hz: float
-) -> CarryCapture:
-    begin, finish = float(recorded.times[0]), float(recorded.times[-1])
-    zero = begin - options.extend_s
-    clock = np.arange(zero, finish + options.extend_s, 1.0 / rate_hz)
-    whole = resampled(recorded, clock, extend="rest")
-    times = clock - zero
-    stream = Stream(times, whole.positions, whole.orientations)
-    hand = replace(scene.sensor(options.hand), stream=stream)
-    capture = Capture(
-        name=f"{scene.name}_{name}",
-        sensors=(hand,),
-        objects=(*_fixed(scene, times), _thing(scene, name, stream)),
-        agent=scene.agent,
-        contact_tolerance_m=scene.contact_tolerance_m,
-        contact_dropout_s=scene.contact_dropout_s,
-        contact_minimum_s=scene.contact_minimum_s,
-        pivot_contacts=_pivots(scene, hand, name),
-    )
-    return CarryCapture(name, capture, begin - zero, finish - zero)
-
-
-def _thing(scene: Capture, name: str, stream: Stream) -> TagObject:
-    known = next((each for each in scene.objects if each.name == name), None)
-    return replace(known, stream=stream) if known else TagObject(name, TagType.MOBILE, stream)
-
-
-def _pivots(scene: Capture, hand: Sensor, name: str) -> tuple[PivotContact, ...]:
-    pair = {hand.name, name}
-    own = tuple(each for each in scene.pivot_contacts if {each.first, each.second} == pair)
-    return own or (PivotContact(hand.name, name, TOUCHES_M),)
-
-
-def _fixed(scene: Capture, times: np.ndarray) -> Iterator[TagObject]:
-    """The fixed objects, where they are in the scene, on another clock."""
-    for thing in scene.objects:
-        if thing.tag is TagType.FIXED:
-            frame = int(np.argmax(~thing.stream.lost))
-            still = Stream(
-                times,
-                np.repeat(thing.stream.positions[[frame]], len(times), axis=0),
-                np.repeat(thing.stream.orientations[[frame]], len(times), axis=0),
-            )
-            yield replace(thing, stream=still)
-
-
-CARRY = "carry"
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +59,7 @@ class CarryEnds:
 
 
 @dataclass(frozen=True)
-class CarryCounts:
+class CarryCounts(Counts):
     """Labelled carries, and how many were found beside them."""
 
     within_s: float
@@ -191,27 +90,38 @@ class CarryCounts:
     def _shares(self, carries: Sequence[CarryEnds]) -> dict[str, Any]:
         errors_s = [(carry.start_error_s, carry.end_error_s) for carry in carries]
         near = np.abs(np.array(errors_s).reshape(-1, 2)) <= self.within_s + SAME_S
-        shares = (near[:, 0], near[:, 1], near.all(axis=1))
-        names = ("start", "end", "both")
+        shares = {"start": near[:, 0], "end": near[:, 1], "both": near.all(axis=1)}
         return {
             name: rounded(100.0 * float(np.mean(share))) if len(near) else None
-            for name, share in zip(names, shares, strict=True)
+            for name, share in shares.items()
         }
 
 
-def score_carries(plan: Plan, base: Profile, progress: Progress) -> Evaluation:
-    """Observe captures and compare printed carries with labelled ones.
+def score_carries(pair: Pair, plan: Plan, base: Profile) -> Scored:
+    """Observe a capture and compare printed carries with labelled ones.
 
-    A printed carry of an object is a run of segments, one after the other, of which the object is
-    the dominant one: from the first in which it is carried to the last.
-
-    Raises:
-        CaparError: A capture or a label file has a fault.
+    A printed carry of an object is a run of consecutive segments of which the object is the
+    dominant one: from the first in which it is carried to the last. Where the presence of objects
+    in a recording is the label, each is observed in a capture of its own.
     """
-    one = _recorded if plan.carries.presence_of else _labelled
-    return Evaluation(
-        Kind.CARRIES, tuple(one(pair, plan, base) for pair in progress(plan.pairs)), plan.groups
-    )
+    if not plan.carries.presence_of:
+        labels, capture = plan.labels_of(pair), read_capture(pair.capture)
+        check_known(labels, "object", [each.name for each in capture.objects], at="object")
+        check_span(labels, capture.times)
+        observation = observe(capture, rules=base)
+        return compare_carries(pair.name, labels, observation, capture, plan.carries)
+    parts: dict[str, CarryCounts] = {}
+    channels: list[Channel] = []
+    last_s = 0.0
+    for capture, mark in carry_captures(pair.capture, plan.carries):
+        labels = Labels(Path(pair.capture), (mark,), in_frames=False)
+        observation = observe(capture, rules=base)
+        scored = compare_carries(pair.name, labels, observation, capture, plan.carries)
+        parts |= scored.parts
+        channels += scored.channels
+        last_s = max(last_s, float(capture.times[-1]))
+    clock = np.arange(0.0, last_s + 0.02, 0.02)
+    return Scored(pair.name, clock, tuple(channels), parts, summed(parts.values()))
 
 
 def compare_carries(
@@ -221,10 +131,9 @@ def compare_carries(
     parts, channels = {}, []
     for thing in dict.fromkeys(mark.object for mark in labels.marks):
         marks = [mark for mark in labels.marks if mark.object == thing and mark.sure]
-        segments = _segments_of(observation, thing)
+        segments = tuple(each for each in observation.segments if each.objects[:1] == (thing,))
         found = printed_carries(segments, options.names)
-        stream = capture.tag_object(thing).stream
-        parts[thing] = _counts(marks, found, stream, options)
+        parts[thing] = _counts(marks, found, capture.tag_object(thing).stream, options)
         true = tuple(Interval(mark.start, mark.end, CARRY) for mark in marks)
         channels.append(Channel(thing, true, found, silent=True, segments=segments))
     return Scored(
@@ -257,72 +166,29 @@ def printed_carries(segments: Iterable[Segment], names: Sequence[str]) -> tuple[
     return tuple(sorted(out))
 
 
-def _labelled(pair: Pair, plan: Plan, base: Profile) -> Scored:
-    labels = read_case_labels(pair, plan)
-    capture = read_capture(pair.capture)
-    check_known(labels, "object", [each.name for each in capture.objects], at="object")
-    check_span(labels, capture.times)
-    observation = observe(capture, rules=base)
-    return compare_carries(pair.name, labels, observation, capture, plan.carries)
-
-
-def _recorded(pair: Pair, plan: Plan, base: Profile) -> Scored:
-    """Carries that the presence of objects in a recording tells, each in a capture of its own."""
-    parts: dict[str, CarryCounts] = {}
-    channels: list[Channel] = []
-    last_s = 0.0
-    for carry in carry_captures(pair.capture, plan.carries):
-        mark = Label("", carry.start_s, carry.end_s, CARRY, carry.object)
-        observation = observe(carry.capture, rules=base)
-        labels = Labels(Path(pair.capture), (mark,), in_frames=False)
-        scored = compare_carries(pair.name, labels, observation, carry.capture, plan.carries)
-        parts |= scored.parts
-        channels += scored.channels
-        last_s = max(last_s, float(carry.capture.times[-1]))
-    clock = np.arange(0.0, last_s + 0.02, 0.02)
-    return Scored(pair.name, clock, tuple(channels), parts, summed(parts.values()))
-
-
-def _segments_of(observation: Observation, thing: str) -> tuple[Segment, ...]:
-    """The segments that are about an object, link by link in order of time."""
-    return tuple(each for each in observation.segments if each.objects[:1] == (thing,))
-
-
 def _counts(
     marks: Sequence[Label], found: Sequence[Interval], stream: Stream, options: CarryOptions
 ) -> CarryCounts:
+    def shared(each: Interval, mark: Label) -> float:
+        return min(each.end_s, mark.end) - max(each.start_s, mark.start)
+
+    # Each printed carry belongs to the labelled one that it overlaps most.
+    owners = {each: max(marks, key=lambda mark: shared(each, mark)) for each in found if marks}
+    owners = {each: mark for each, mark in owners.items() if shared(each, mark) > 0.0}
     carries = []
-    taken: set[Interval] = set()
     for mark in marks:
-        own = [each for each in found if _nearest_mark(each, marks) == mark]
-        taken |= set(own)
-        start = min((each.start_s for each in own), default=float("inf"))
-        end = max((each.end_s for each in own), default=float("inf"))
-        carries.append(_ends(mark, start, end, stream, options))
-    return CarryCounts(options.within_s, tuple(carries), extra=len(set(found) - taken))
-
-
-def _nearest_mark(found: Interval, marks: Sequence[Label]) -> Label | None:
-    """The labelled carry that it overlaps most."""
-
-    def shared(mark: Label) -> float:
-        return min(found.end_s, mark.end) - max(found.start_s, mark.start)
-
-    best = max(marks, key=shared, default=None)
-    return best if best is not None and shared(best) > 0.0 else None
-
-
-def _ends(
-    mark: Label, start_s: float, end_s: float, stream: Stream, options: CarryOptions
-) -> CarryEnds:
-    begins, ends = _motion(mark, stream, options.moves_m)
-    late = max(begins - mark.start, mark.end - ends)
-    return CarryEnds(
-        start_error_s=start_s - mark.start,
-        end_error_s=end_s - mark.end,
-        moved=bool(np.isfinite(begins)),
-        moves_at_ends=bool(late <= options.within_s),
-    )
+        own = [each for each, owner in owners.items() if owner == mark]
+        begins, ends = _motion(mark, stream, options.moves_m)
+        late = max(begins - mark.start, mark.end - ends)
+        carries.append(
+            CarryEnds(
+                start_error_s=min((each.start_s for each in own), default=np.inf) - mark.start,
+                end_error_s=max((each.end_s for each in own), default=np.inf) - mark.end,
+                moved=bool(np.isfinite(begins)),
+                moves_at_ends=bool(late <= options.within_s),
+            )
+        )
+    return CarryCounts(options.within_s, tuple(carries), extra=len(set(found) - set(owners)))
 
 
 def _motion(mark: Label, stream: Stream, moves_m: float) -> tuple[float, float]:
@@ -333,21 +199,78 @@ def _motion(mark: Label, stream: Stream, moves_m: float) -> tuple[float, float]:
     inside = (stream.times >= mark.start) & (stream.times <= mark.end) & ~stream.lost
     times, places = stream.times[inside], stream.positions[inside]
     if not len(times):
-        return float("inf"), float("-inf")
-    gone = _away(places, places[0]) > moves_m
-    back = _away(places, places[-1]) > moves_m
+        return np.inf, -np.inf
+    gone, back = (np.linalg.norm(places - places[end], axis=1) > moves_m for end in (0, -1))
     if not gone.any():
-        return float("inf"), float("-inf")
+        return np.inf, -np.inf
     return float(times[gone][0]), float(times[back][-1])
 
 
-def _away(
-    places: Float[np.ndarray, "frames 3"], place: Float[np.ndarray, "3"]
-) -> Float[np.ndarray, "frames"]:
-    return np.asarray(np.linalg.norm(places - place, axis=1))
+def carry_captures(place: str, options: CarryOptions) -> Iterator[tuple[Capture, Label]]:
+    """A capture for each object that a recording has while it is carried, in order of time.
+
+    When the object's stream begins and ends is the label. So that this tells the program nothing,
+    the object rests before and after, and the hand that carries it is with it all the time: only
+    motion is left to say when the carry begins and ends. Beside the object there are the bundle's
+    fixed objects. An object that the bundle leaves out, for want of a shape, is there without one.
+
+    Raises:
+        CaparError: The bundle has a fault, or no such file or sensor.
+    """
+    document, _ = open_bundle(place)
+    files = read_files(document)
+    if options.presence_of not in files:
+        raise UnknownNameError("file", options.presence_of, files, where=f"{document.file_path}")
+    scene = read_capture(place)
+    names: dict[str, str] = {}
+    for entry in (each for each in document.objects_from if each.file == options.presence_of):
+        objects, notices = many_objects(entry, files)
+        names |= {str(each.body): each.name for each in objects}
+        left_out = [body for each in notices for body in each.bodies]
+        for index, body in enumerate(left_out, 1):
+            names[body] = f"{constant_name(body.partition('(')[0])}_{index}"
+    recorded = files[options.presence_of].bodies
+    for body in sorted(names, key=lambda each: float(recorded[each].times[0])):
+        yield _carry(scene, names[body], recorded[body], options, document.rate_hz or RATE_HZ)
 
 
-INTO = "into"
+def _carry(
+    scene: Capture, name: str, recorded: Stream, options: CarryOptions, rate_hz: float
+) -> tuple[Capture, Label]:
+    begin, finish = float(recorded.times[0]), float(recorded.times[-1])
+    zero = begin - options.extend_s
+    clock = np.arange(zero, finish + options.extend_s, 1.0 / rate_hz)
+    whole, times = resampled(recorded, clock, extend="rest"), clock - zero
+    stream = Stream(times, whole.positions, whole.orientations)
+    hand = replace(scene.sensor(options.hand), stream=stream)
+    known = next((each for each in scene.objects if each.name == name), None)
+    thing = replace(known, stream=stream) if known else TagObject(name, TagType.MOBILE, stream)
+    pair = {hand.name, name}
+    pivots = tuple(each for each in scene.pivot_contacts if {each.first, each.second} == pair)
+    capture = Capture(
+        name=f"{scene.name}_{name}",
+        sensors=(hand,),
+        objects=(*_fixed(scene, times), thing),
+        agent=scene.agent,
+        contact_tolerance_m=scene.contact_tolerance_m,
+        contact_dropout_s=scene.contact_dropout_s,
+        contact_minimum_s=scene.contact_minimum_s,
+        pivot_contacts=pivots or (PivotContact(hand.name, name, TOUCHES_M),),
+    )
+    return capture, Label("", begin - zero, finish - zero, CARRY, name)
+
+
+def _fixed(scene: Capture, times: np.ndarray) -> Iterator[TagObject]:
+    """The fixed objects, where they are in the scene, on another clock."""
+    for thing in scene.objects:
+        if thing.tag is TagType.FIXED:
+            frame = int(np.argmax(~thing.stream.lost))
+            still = Stream(
+                times,
+                np.repeat(thing.stream.positions[[frame]], len(times), axis=0),
+                np.repeat(thing.stream.orientations[[frame]], len(times), axis=0),
+            )
+            yield replace(thing, stream=still)
 
 
 @dataclass(frozen=True, slots=True)
@@ -361,6 +284,61 @@ class Landing:
 
     true: bool
     """Whether its middle lies inside at the end and did not at the beginning."""
+
+
+@dataclass(frozen=True)
+class LandingCounts(Counts):
+    """How many objects went into a container, and of how many that is reported."""
+
+    told_in: int = 0
+    """It is reported, and true."""
+
+    told_wrongly: int = 0
+    """It is reported, and not true."""
+
+    untold: int = 0
+    """It is true, and not reported."""
+
+    out: int = 0
+    """It is neither."""
+
+    def scores(self) -> dict[str, Any]:
+        """Counts, and the share that is right [%]."""
+        total = self.told_in + self.told_wrongly + self.untold + self.out
+        right = self.told_in + self.out
+        return {
+            "objects": total,
+            "right": right,
+            "went_in": self.told_in + self.untold,
+            "told": self.told_in + self.told_wrongly,
+            "told_wrongly": self.told_wrongly,
+            "untold": self.untold,
+            "accuracy": rounded(100.0 * right / total) if total else None,
+        }
+
+
+def score_containers(pair: Pair, plan: Plan, base: Profile) -> Scored:
+    """Observe a capture and compare the preposition *into* with its objects' first and last poses.
+
+    Raises:
+        CaparError: The capture has a fault, or no such container.
+    """
+    assert plan.containers is not None, "a plan of containers names them"
+    capture = read_capture(pair.capture)
+    parts, notices = {}, []
+    for name in plan.containers.names:
+        whole, names = halved(capture, name) if plan.containers.halves else (capture, (name,))
+        found = landings(whole, names, rules=base)
+        parts[name] = count_landings(found)
+        for each in found:
+            if each.reported != each.true:
+                true = "went" if each.true else "did not go"
+                reported = "is reported" if each.reported else "is not reported"
+                notices.append(
+                    f"{pair.name}: {each.object} {true} into {each.container} and {reported} to"
+                )
+    notices += [each.message for each in capture.notices if each.code == "objects-left-out"]
+    return Scored(pair.name, capture.times, (), parts, summed(parts.values()), (), tuple(notices))
 
 
 def landings(
@@ -381,17 +359,25 @@ def landings(
         if name == INTO and other in names
     }
     things = [each for each in capture.objects if each.tag is TagType.MOBILE and each.shape]
-    return tuple(
-        Landing(
-            object=each.name,
-            container=name,
-            reported=(each.name, name) in reported,
-            true=_inside(each, -1, capture.tag_object(name))
-            and not _inside(each, 0, capture.tag_object(name)),
-        )
-        for name in names
-        for each in things
-    )
+    out = []
+    for name in names:
+        container = capture.tag_object(name)
+        for each in things:
+            true = _inside(each, -1, container) and not _inside(each, 0, container)
+            out.append(Landing(each.name, name, (each.name, name) in reported, true))
+    return tuple(out)
+
+
+def count_landings(found: Iterable[Landing]) -> LandingCounts:
+    """The counts of landings."""
+    fields: Mapping[tuple[bool, bool], str] = {
+        (True, True): "told_in",
+        (True, False): "told_wrongly",
+        (False, True): "untold",
+        (False, False): "out",
+    }
+    counts = (LandingCounts(**{fields[each.reported, each.true]: 1}) for each in found)
+    return sum(counts, LandingCounts())
 
 
 def halved(capture: Capture, container: str) -> tuple[Capture, tuple[str, str]]:
@@ -404,27 +390,20 @@ def halved(capture: Capture, container: str) -> tuple[Capture, tuple[str, str]]:
         their names.
     """
     whole = capture.tag_object(container)
-    assert whole.shape is not None
-    axis = int(np.argmax(whole.shape.size[:2]))
-    halves = tuple(_half(whole, axis, side) for side in (-1.0, 1.0))
-    others = tuple(each for each in capture.objects if each.name != container)
-    return replace(capture, objects=(*others, *halves)), (halves[0].name, halves[1].name)
-
-
-def _half(whole: TagObject, axis: int, side: float) -> TagObject:
     shape = whole.shape
     assert shape is not None
-    vertices = np.array(shape.vertices)
+    axis = int(np.argmax(shape.size[:2]))
     middle = float(shape.bounds[:, axis].mean())
-    vertices[:, axis] = (vertices[:, axis] - middle) / 2.0 + middle
-    vertices[:, axis] += side * float(shape.size[axis]) / 4.0
-    word = "near" if side < 0.0 else "far"
-    return replace(
-        whole,
-        name=f"{whole.name}_{word}",
-        shape=Shape(vertices, np.array(shape.faces), shape.source, f"half of {shape.description}"),
-        assumed=f"the {word} half of {whole.name}",
-    )
+    halves = []
+    for word, side in (("near", -1.0), ("far", 1.0)):
+        vertices = np.array(shape.vertices)
+        vertices[:, axis] = (vertices[:, axis] - middle) / 2.0 + middle
+        vertices[:, axis] += side * float(shape.size[axis]) / 4.0
+        half = Shape(vertices, np.array(shape.faces), shape.source, f"half of {shape.description}")
+        said = f"the {word} half of {container}"
+        halves.append(replace(whole, name=f"{container}_{word}", shape=half, assumed=said))
+    others = tuple(each for each in capture.objects if each.name != container)
+    return replace(capture, objects=(*others, *halves)), (halves[0].name, halves[1].name)
 
 
 def _inside(thing: TagObject, frame: int, container: TagObject) -> bool:
@@ -440,86 +419,3 @@ def _box(thing: TagObject, frame: int) -> Float[np.ndarray, "2 3"]:
     assert thing.shape is not None
     points = thing.stream.pose(frame).apply(np.array(thing.shape.vertices))
     return np.stack([points.min(axis=0), points.max(axis=0)])
-
-
-@dataclass(frozen=True)
-class LandingCounts:
-    """How many objects went into a container, and of how many that is told."""
-
-    told_in: int = 0
-    """It is told, and true."""
-
-    told_wrongly: int = 0
-    """It is told, and not true."""
-
-    untold: int = 0
-    """It is true, and not told."""
-
-    out: int = 0
-    """It is neither."""
-
-    def __add__(self, other: "LandingCounts") -> "LandingCounts":
-        """Both together."""
-        return LandingCounts(
-            self.told_in + other.told_in,
-            self.told_wrongly + other.told_wrongly,
-            self.untold + other.untold,
-            self.out + other.out,
-        )
-
-    def scores(self) -> dict[str, Any]:
-        """Counts, and the share that is right [%]."""
-        total = self.told_in + self.told_wrongly + self.untold + self.out
-        right = self.told_in + self.out
-        return {
-            "objects": total,
-            "right": right,
-            "went_in": self.told_in + self.untold,
-            "told": self.told_in + self.told_wrongly,
-            "told_wrongly": self.told_wrongly,
-            "untold": self.untold,
-            "accuracy": rounded(100.0 * right / total) if total else None,
-        }
-
-
-def score_containers(plan: Plan, base: Profile, progress: Progress) -> Evaluation:
-    """Observe captures and compare the preposition *into* with the objects' first and last poses.
-
-    Raises:
-        CaparError: A capture has a fault, or no such container.
-    """
-    return Evaluation(
-        Kind.CONTAINERS,
-        tuple(_scored(pair, plan, base) for pair in progress(plan.pairs)),
-        plan.groups,
-    )
-
-
-def count_landings(found: Iterable[Landing]) -> LandingCounts:
-    """The counts of landings."""
-    return sum((LandingCounts(**{_field(each): 1}) for each in found), LandingCounts())
-
-
-def _field(landing: Landing) -> str:
-    if landing.reported:
-        return "told_in" if landing.true else "told_wrongly"
-    return "untold" if landing.true else "out"
-
-
-def _scored(pair: Pair, plan: Plan, base: Profile) -> Scored:
-    assert plan.containers is not None, "a plan of containers names them"
-    capture = read_capture(pair.capture)
-    parts, notices = {}, []
-    for name in plan.containers.names:
-        whole, names = halved(capture, name) if plan.containers.halves else (capture, (name,))
-        found = landings(whole, names, rules=base)
-        parts[name] = count_landings(found)
-        notices += [_shown(pair, each) for each in found if each.reported != each.true]
-    notices += [each.message for each in capture.notices if each.code == "objects-left-out"]
-    return Scored(pair.name, capture.times, (), parts, summed(parts.values()), (), tuple(notices))
-
-
-def _shown(pair: Pair, landing: Landing) -> str:
-    true = "went" if landing.true else "did not go"
-    told = "is told to" if landing.reported else "is not told to"
-    return f"{pair.name}: {landing.object} {true} into {landing.container} and {told}"

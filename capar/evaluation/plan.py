@@ -7,11 +7,14 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
-from capar.evaluation.labels import Contradictions, Kind
+from capar.evaluation.labels import Contradictions, Kind, Labels, in_seconds, read_labels
 from capar.evaluation.metrics import Interval
 from capar.model.errors import CaparError, FileError, UnknownNameError
-from capar.model.observation import ObservedLink, Segment
-from extractors.readers.bundle.capture_toml import FILE, find_place, take_words
+from capar.model.observation import Observation, ObservedLink, Segment
+from capar.model.par import UNKNOWN
+from capar_rules.engine.profiles import DEFAULT, Profile, profile
+from capar_rules.engine.solver import solve
+from extractors.readers.bundle.capture_toml import FILE, find_place, frame_times, take_words
 from extractors.readers.schema.capture import Positive
 from extractors.readers.schema.entry import Entry, expanded, key, read_toml, substituted, validated
 
@@ -107,6 +110,17 @@ def own_names(names: Iterable[str]) -> LabelMapping:
     return LabelMapping(Path(), (), {}, tuple(names), own_names=True)
 
 
+def known_names(observations: Sequence[Observation], base: Profile | None = None) -> set[str]:
+    """Every name that a segment can bear: of the rules that ship, of a base's, and those seen."""
+    names = {UNKNOWN}
+    for rules in (profile(DEFAULT), *([base] if base else ())):
+        found = solve(rules.files, "#show primitive/1.")
+        names |= {str(name) for (name,) in found.of("primitive")}
+    for segment in (each for one in observations for each in one.segments):
+        names |= {segment.name, *segment.general, *segment.candidates}
+    return names
+
+
 def check_names(
     mapping: LabelMapping, *, names: Iterable[str], objects: Iterable[str], labels: Iterable[str]
 ) -> tuple[str, ...]:
@@ -171,11 +185,14 @@ def _label(segments: Sequence[Segment], index: int, mapping: LabelMapping) -> st
 
 def _fits(rule: Rule, segments: Sequence[Segment], index: int) -> bool:
     segment = segments[index]
+    contacts = ["1" in each.features.rel_start for each in segments]
+    ends = ["1" in each.features.rel_end for each in segments]
     return (
         rule.name in {ANY, segment.name, *segment.general}
         and (not rule.object or rule.object in segment.objects)
         and (not rule.dominant or segment.objects[:1] == (rule.dominant,))
-        and (not rule.position or POSITIONS[rule.position](segments, index))
+        and (rule.position != "before first" or not any(contacts[: index + 1]))
+        and (rule.position != "after last" or not any(ends[index:]))
         and (rule.previous is None or _is(rule.previous, segments[:index][-1:]))
         and (rule.next is None or _is(rule.next, segments[index + 1 : index + 2]))
     )
@@ -186,24 +203,6 @@ def _is(name: str, neighbour: Sequence[Segment]) -> bool:
     if not neighbour or not name:
         return not neighbour and not name
     return name in {ANY, neighbour[0].name, *neighbour[0].general}
-
-
-def _before_first(segments: Sequence[Segment], index: int) -> bool:
-    return not any("1" in each.features.rel_start for each in segments[: index + 1])
-
-
-def _after_last(segments: Sequence[Segment], index: int) -> bool:
-    return not any("1" in each.features.rel_end for each in segments[index:])
-
-
-POSITIONS: dict[str, Callable[[Sequence[Segment], int], bool]] = {
-    "before first": _before_first,
-    "after last": _after_last,
-}
-"""Places in the sequence: before the first contact begins, and after the last one ends."""
-
-
-# ruff: noqa: RUF012  (pydantic copies the defaults of fields)
 
 
 class ContactArrays(Entry):
@@ -341,6 +340,18 @@ class Plan:
                 'containers are named in an evaluation file: [containers] names = ["box"]'
             )
 
+    def labels_of(self, pair: Pair) -> Labels:
+        """The labels of a capture, in seconds of its clock, with our names of bodies.
+
+        Raises:
+            CaparError: The label file has a fault.
+        """
+        assert pair.labels is not None, "a plan without label files reads none"
+        labels = read_labels(pair.labels, self.kind, contradictions=self.contradictions)
+        if labels.in_frames:
+            labels = in_seconds(labels, frame_times(pair.capture, file=self.frames_of))
+        return labels.renamed(dict(self.names))
+
 
 def read_plan(path: Path, *, takes: Sequence[str] = ()) -> Plan:
     """The plan that an evaluation file states.
@@ -355,12 +366,12 @@ def read_plan(path: Path, *, takes: Sequence[str] = ()) -> Plan:
     table = validated(EvaluationFile, *read_toml(path))
     place = path.parent / table.capture
     words = take_words(place) or {"": {}}
-    chosen = [each for each in words if not each or _fits_plan(each, table.takes)]
-    chosen = [each for each in chosen if not takes or _fits_plan(each, takes)]
+    chosen = [each for each in words if not each or _is_among(each, table.takes)]
+    chosen = [each for each in chosen if not takes or _is_among(each, takes)]
     if not chosen:
         raise table.unknown("take", ", ".join(takes or table.takes), words, "takes")
     groups = {
-        name: tuple(each for each in chosen if _fits_plan(each, patterns))
+        name: tuple(each for each in chosen if _is_among(each, patterns))
         for name, patterns in table.groups.items()
     }
     return Plan(
@@ -403,7 +414,7 @@ def _couple(place: str, labels: str) -> list[Pair]:
         words = take_words(place)
         take = find_place(place)[1]
         own = words.get(take, {})
-        return [Pair(place, _filled(labels, own), take, own)]
+        return [Pair(place, Path(substituted(labels, own)), take, own)]
     words = take_words(stem)
     chosen = [each for each in words if fnmatchcase(each, pattern)]
     if not chosen:
@@ -413,21 +424,19 @@ def _couple(place: str, labels: str) -> list[Pair]:
             labels, f"is one label file for {len(chosen)} takes.",
             "Write {take} in its name where the take's name stands.",
         )  # fmt: skip
-    return [Pair(f"{stem}:{take}", _filled(labels, words[take]), take, words[take])
+    return [Pair(f"{stem}:{take}", Path(substituted(labels, words[take])), take, words[take])
             for take in chosen]  # fmt: skip
 
 
 def _pair(table: EvaluationFile, place: Path, take: str, words: Mapping[str, str]) -> Pair:
-    labels = _filled(os.fspath(expanded(table, "labels")), words) if table.labels else None
+    labels = None
+    if table.labels:
+        labels = Path(substituted(os.fspath(expanded(table, "labels")), words))
     unneeded = table.containers or (table.carries and table.carries.presence_of)
     if labels is None and not unneeded:
         raise table.error("labels", "names no labels.", 'Write labels = "FILE", with {take} in it.')
     return Pair(f"{place}:{take}" if take else str(place), labels, take, words)
 
 
-def _filled(labels: str, words: Mapping[str, str]) -> Path:
-    return Path(substituted(labels, words))
-
-
-def _fits_plan(take: str, patterns: Sequence[str]) -> bool:
+def _is_among(take: str, patterns: Sequence[str]) -> bool:
     return any(fnmatchcase(take, each) for each in patterns)

@@ -1,30 +1,55 @@
-"""Segments held against labels of actions: captures observed, link by link and pooled."""
+"""A plan carried out: captures observed and compared with their labels, and drawn beside them."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
 
-from capar.evaluation.labels import Kind, Labels, check_known, check_span, in_seconds, read_labels
-from capar.evaluation.metrics import Channel, Evaluation, Interval, Scored, summed, tally
+from capar.evaluation.contacts import score_contacts
+from capar.evaluation.events import score_events
+from capar.evaluation.labels import Kind, Labels, check_known, check_span
+from capar.evaluation.metrics import (
+    Channel,
+    Evaluation,
+    Interval,
+    Scored,
+    differences,
+    merged,
+    summed,
+    tally,
+)
+from capar.evaluation.objects import score_carries, score_containers
 from capar.evaluation.plan import (
     LabelMapping,
     Pair,
     Plan,
     Progress,
     check_names,
+    known_names,
     labelled,
     own_names,
 )
 from capar.model.capture import Capture
-from capar.model.errors import CaparError
+from capar.model.errors import CaparError, FileError
 from capar.model.observation import Observation
-from capar.model.par import UNKNOWN
 from capar.pipelines.observation import observe
+from capar.views.lettering import Span
+from capar.views.picture import Lane, draw_comparison
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.engine.solver import solve
-from extractors.readers.bundle.capture_toml import frame_times, read_capture
+from extractors.readers.bundle.capture_toml import read_capture
+
+SCORERS: Mapping[Kind, Callable[[Pair, Plan, Profile], Scored]] = {
+    Kind.CONTACTS: score_contacts,
+    Kind.CARRIES: score_carries,
+    Kind.EVENTS: score_events,
+    Kind.CONTAINERS: score_containers,
+}
+"""How one capture is scored; actions are scored together, by ``score_actions``."""
+
+CAPTURE = "{capture}"
+"""What stands in a picture's name for the capture."""
 
 
 @dataclass(frozen=True)
@@ -40,17 +65,45 @@ class Case:
     """What it is called; the capture's name if empty."""
 
 
+def evaluate(
+    plan: Plan, *, rules: Profile | str = DEFAULT, progress: Progress = iter
+) -> Evaluation:
+    """Observe the captures of a plan and compare what is printed or stored with their labels.
+
+    Args:
+        plan: Captures, labels, and what the labels are about.
+        rules: The rule profile to observe with, or its name.
+        progress: Goes through the captures, one after the other, and may show how far it is.
+
+    Raises:
+        CaparError: A capture, a label file or the mapping has a fault.
+    """
+    base = profile(rules) if isinstance(rules, str) else rules
+    if plan.kind is Kind.ACTIONS:
+        return score_actions(plan, base, progress)
+    captures = tuple(SCORERS[plan.kind](pair, plan, base) for pair in progress(plan.pairs))
+    return Evaluation(plan.kind, captures, plan.groups)
+
+
 def score_actions(plan: Plan, base: Profile, progress: Progress) -> Evaluation:
     """Observe captures and compare the names of their segments with labels.
+
+    Every fault of the labels is found before anything is observed.
 
     Raises:
         CaparError: A capture, a label file or the mapping has a fault.
     """
     mapping, strangers = (plan.mapping, []) if plan.mapping else _own_names(plan, base)
-    read = [(pair, _prepared(pair, plan, mapping)) for pair in plan.pairs]
+    read: list[tuple[Pair, Labels, Capture]] = []
+    for pair in plan.pairs:
+        labels, capture = plan.labels_of(pair), read_capture(pair.capture)
+        links = [mapping.links.get(each.name, each.name) for each in capture.acting]
+        _check_labels(labels, links, mapping)
+        check_span(labels, capture.times)
+        read.append((pair, labels, capture))
     cases = [
         Case(observe(capture, rules=base), labels, capture.times, pair.name)
-        for pair, (labels, capture) in progress(read)
+        for pair, labels, capture in progress(read)
     ]
     notices = check_names(
         mapping,
@@ -67,7 +120,7 @@ def _own_names(plan: Plan, base: Profile) -> tuple[LabelMapping, list[str]]:
     Raises:
         CaparError: None of the labels is one.
     """
-    labels = {name for pair in plan.pairs for name in read_case_labels(pair, plan).names}
+    labels = {name for pair in plan.pairs for name in plan.labels_of(pair).names}
     names = known_names((), base)
     if not labels & names:
         raise CaparError(
@@ -92,42 +145,32 @@ def compare(
         UnknownNameError: Labels are of a link that was not observed, a label is one that no rule
             of the mapping gives, or no rule fits a segment.
     """
-    captures = tuple(_scored(case, mapping) for case in cases)
-    return Evaluation(Kind.ACTIONS, captures, dict(groups or {}), tuple(notices))
-
-
-def known_names(observations: Sequence[Observation], base: Profile | None = None) -> set[str]:
-    """Every name that a segment can bear: of the rules that ship, of a base's, and those seen."""
-    names = {UNKNOWN}
-    for rules in (profile(DEFAULT), *([base] if base else ())):
-        found = solve(rules.files, "#show primitive/1.")
-        names |= {str(name) for (name,) in found.of("primitive")}
-    for segment in (each for one in observations for each in one.segments):
-        names |= {segment.name, *segment.general, *segment.candidates}
-    return names
-
-
-def read_case_labels(pair: Pair, plan: Plan) -> Labels:
-    """The labels of a capture, in seconds of its clock, with our names of bodies.
-
-    Raises:
-        CaparError: The label file has a fault.
-    """
-    assert pair.labels is not None, "a plan without label files reads none"
-    labels = read_labels(pair.labels, plan.kind, contradictions=plan.contradictions)
-    if labels.in_frames:
-        labels = in_seconds(labels, frame_times(pair.capture, file=plan.frames_of))
-    return labels.renamed(dict(plan.names))
-
-
-def _prepared(pair: Pair, plan: Plan, mapping: LabelMapping) -> tuple[Labels, Capture]:
-    """Labels and capture, with every fault of the labels found before anything is observed."""
-    labels = read_case_labels(pair, plan)
-    capture = read_capture(pair.capture)
-    links = [mapping.links.get(each.name, each.name) for each in capture.acting]
-    _check_labels(labels, links, mapping)
-    check_span(labels, capture.times)
-    return labels, capture
+    captures = []
+    for case in cases:
+        links = {mapping.links.get(each.ee, each.ee): each for each in case.observation.links}
+        _check_labels(case.labels, links, mapping)
+        channels = tuple(
+            Channel(
+                name,
+                tuple(Interval(each.start, each.end, each.label) for each in case.labels.of(name)),
+                labelled(links[name], mapping),
+                segments=links[name].segments,
+            )
+            for name in case.labels.links
+        )
+        parts = {each.name: tally(each.true, each.found, case.times) for each in channels}
+        captures.append(
+            Scored(
+                name=case.name or case.observation.capture,
+                times=case.times,
+                channels=channels,
+                parts=parts,
+                whole=summed(parts.values()),
+                unlabelled=tuple(sorted(set(links) - set(parts))),
+                notices=case.labels.notices,
+            )
+        )
+    return Evaluation(Kind.ACTIONS, tuple(captures), dict(groups or {}), tuple(notices))
 
 
 def _check_labels(labels: Labels, links: Iterable[str], mapping: LabelMapping) -> None:
@@ -135,25 +178,50 @@ def _check_labels(labels: Labels, links: Iterable[str], mapping: LabelMapping) -
     check_known(labels, "label in the mapping", mapping.labels, at="label")
 
 
-def _scored(case: Case, mapping: LabelMapping) -> Scored:
-    links = {mapping.links.get(each.ee, each.ee): each for each in case.observation.links}
-    _check_labels(case.labels, links, mapping)
-    channels = tuple(
-        Channel(
-            name,
-            true=tuple(Interval(each.start, each.end, each.label) for each in case.labels.of(name)),
-            found=labelled(links[name], mapping),
-            segments=links[name].segments,
+def picture_paths(path: Path, captures: Iterable[str]) -> dict[str, Path]:
+    """The picture of each capture.
+
+    Raises:
+        FileError: There are several captures, and the name has no place for theirs.
+    """
+    names = list(captures)
+    if CAPTURE in str(path):
+        return {name: Path(str(path).replace(CAPTURE, name)) for name in names}
+    if len(names) > 1:
+        raise FileError(
+            path,
+            f"is one picture for {len(names)} captures.",
+            f"Write {CAPTURE} in its name, or evaluate one take: --takes {names[0]}",
         )
-        for name in case.labels.links
-    )
-    parts = {each.name: tally(each.true, each.found, case.times) for each in channels}
-    return Scored(
-        name=case.name or case.observation.capture,
-        times=case.times,
-        channels=channels,
-        parts=parts,
-        whole=summed(parts.values()),
-        unlabelled=tuple(sorted(set(links) - set(parts))),
-        notices=case.labels.notices,
-    )
+    return dict.fromkeys(names, path)
+
+
+def draw_evaluation(evaluation: Evaluation, capture: Scored, *, path: Path) -> None:
+    """Draw one capture: for each channel its segments, what was found, labels and differences.
+
+    Raises:
+        FileError: The suffix is no picture's, or the file cannot be written.
+    """
+    last = float(capture.times[-1])
+
+    def spans(intervals: Iterable[Interval]) -> tuple[Span, ...]:
+        return tuple(Span(e.start_s, min(e.end_s, last), e.label) for e in merged(intervals))
+
+    lanes = []
+    for channel in capture.channels:
+        wrong = differences(capture.name, [channel], capture.times)
+        segments = (
+            Span(each.start_s, each.end_s, each.name, (each.general or (each.name,))[-1])
+            for each in channel.segments
+        )
+        lanes.append(
+            Lane(
+                name=channel.name,
+                segments=tuple(segments),
+                found=spans(channel.found),
+                true=spans(channel.true),
+                wrong=tuple(Span(each.start_s, each.end_s, "") for each in wrong),
+            )
+        )
+    subtitle = f"{evaluation.kind} by labels · {last:.2f} s"
+    draw_comparison(capture.name, subtitle, lanes, last - float(capture.times[0]), path=path)

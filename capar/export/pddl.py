@@ -5,7 +5,7 @@ far an end-effector has moved an object, ``(meets PLACE OTHER)`` what the object
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from capar.export.plans import (
@@ -166,7 +166,10 @@ def _schema(source: PlanSource, upar: Upar) -> _Action:
 
 
 def _with_objects(action: _Action, upar: Upar) -> None:
-    """Conditions on contacts, the place of the dominant object, and the posture."""
+    """Conditions on contacts, the place of the dominant object, and the posture.
+
+    What is touched at the end is no posture; where nothing is, a posture is the end.
+    """
     moves = bool(upar.core.moved)
     action.parameters["?place"] = "place"
     action.before.append(f"(at ?EE ?{upar.objects[0]} ?place)")
@@ -177,32 +180,23 @@ def _with_objects(action: _Action, upar: Upar) -> None:
             f"(not (at ?EE ?{upar.objects[0]} ?place))",
             f"(at ?EE ?{upar.objects[0]} ?next)",
         ]
-    for preparation in upar.preparation:
-        action.before.append(_needed(action, preparation.condition))
+    for preparation in upar.preparation:  # what must hold before (thesis 4.6.1.1)
+        if preparation.condition.kind == "posture":
+            action.parameters["?posture"] = "posture"
+            action.before.append("(in_posture ?EE ?posture)")
+        else:
+            action.before.append(_asserted(preparation.condition, "?place"))
     for condition in upar.post_assertions:
         found = _asserted(condition, "?next" if moves else "?place")
         (action.after if condition.arguments[0] == HOLDER else action.before).append(found)
-    _posture(action, upar)
-    if not moves and any(each.kind == "duration" for each in upar.core.termination):
-        action.after.append("(lasted @action ?EE ?place)")
-
-
-def _needed(action: _Action, condition: Condition) -> str:
-    """What must hold before (thesis 4.6.1.1)."""
-    if condition.kind == "posture":
-        action.parameters["?posture"] = "posture"
-        return "(in_posture ?EE ?posture)"
-    return _asserted(condition, "?place")
-
-
-def _posture(action: _Action, upar: Upar) -> None:
-    """What is touched at the end is no posture; where nothing is, a posture is the end."""
     if "?posture" in action.parameters:
         action.after.append("(not (in_posture ?EE ?posture))")
     if not any(each.holds for each in upar.post_assertions):
         action.parameters["?reached"] = "posture"
         action.before.append("(ends_in @action ?EE ?reached)")
         action.after.append("(in_posture ?EE ?reached)")
+    if not moves and any(each.kind == "duration" for each in upar.core.termination):
+        action.after.append("(lasted @action ?EE ?place)")
 
 
 def _asserted(condition: Condition, place: str) -> str:
@@ -243,16 +237,6 @@ class PddlPlan:
     """Link by link."""
 
 
-@dataclass
-class _World:
-    """What the problem says, as the observed steps are gone through."""
-
-    objects: dict[str, str] = field(default_factory=dict)
-    initially: list[str] = field(default_factory=list)
-    goal: list[str] = field(default_factory=list)
-    observed: list[PddlStep] = field(default_factory=list)
-
-
 def pddl(source: PlanSource) -> PddlPlan:
     """A complex action as PDDL with typing and negative conditions.
 
@@ -266,155 +250,136 @@ def pddl(source: PlanSource) -> PddlPlan:
         PlanExportError: A condition of a kind that has no place in the domain.
     """
     domain, names = pddl_domain(source)
-    world = _observed_world(source, names)
-    return PddlPlan(domain, _problem(source, world), tuple(world.observed))
-
-
-def _observed_world(source: PlanSource, names: dict[Upar, str]) -> _World:
-    world = _World()
-    agent = word(f"agent_{source.agent}")
-    world.objects[agent] = "agent"
+    world = _World(names, word(f"agent_{source.agent}"))
+    world.objects[world.agent] = "agent"
     for name, chain in source.kinds.items():
         world.objects[thing_word(name)] = kind_type(chain[0])
     for ee, steps in source.links.items():
-        _observed_link(world, ee, steps, names, agent)
-    return world
+        if steps:
+            _Link(world, ee, steps).go_through()
+    name = word(source.name)
+    lines = [
+        f"(define (problem {name}_observed)",
+        f"  (:domain {name})",
+        "  (:objects",
+        *(f"    {name} - {kind}" for name, kind in world.objects.items()),
+        "  )",
+        "  (:init",
+        *(f"    {atom}" for atom in world.initially),
+        "  )",
+        "  (:goal (and",
+        *(f"    {atom}" for atom in world.goal),
+        "  ))",
+        ")",
+    ]
+    return PddlPlan(domain, "\n".join(lines) + "\n", tuple(world.observed))
 
 
-def _observed_link(
-    world: _World, ee: str, steps: Iterable[PlanStep], names: dict[Upar, str], agent: str
-) -> None:
+@dataclass
+class _World:
+    """What the problem says, as the observed steps are gone through; atoms keep their order."""
+
+    names: Mapping[Upar, str]
+    agent: str
+    objects: dict[str, str] = field(default_factory=dict)
+    initially: dict[str, None] = field(default_factory=dict)
+    goal: dict[str, None] = field(default_factory=dict)
+    observed: list[PddlStep] = field(default_factory=list)
+
+    def new(self, name: str, kind: str) -> str:
+        """A new object of the problem."""
+        made = word(name)
+        self.objects[made] = kind
+        return made
+
+
+class _Link:
     """One link's steps: the places and postures that it goes through, and what it ends in."""
-    steps = tuple(steps)
-    if not steps:
-        return
-    holder = word(f"{ee}_ee")
-    world.objects[holder] = effector_type(steps[0].upar.core.constraint.features.end_effector)
-    world.initially.append(f"(of {holder} {agent})")
-    first = steps[0]
-    posture = _new(world, f"{ee}_start", "posture")
-    if not any(needed.condition.kind == "contact" for needed in first.upar.preparation):
-        world.initially.append(f"(in_posture {holder} {posture})")
-    places: dict[str, str] = {}
-    counts: dict[str, int] = {}
-    touched: dict[str, bool] = {}
-    for planned in steps:
-        name, what = names[planned.upar], planned.ipar.objects
-        arguments = [holder, agent, *map(thing_word, what)]
-        _state_capable(world, planned, name, agent)
-        after = posture
+
+    def __init__(self, world: _World, ee: str, steps: Sequence[PlanStep]) -> None:
+        self.world, self.ee, self.steps = world, ee, steps
+        self.holder = word(f"{ee}_ee")
+        hand = steps[0].upar.core.constraint.features.end_effector
+        world.objects[self.holder] = effector_type(hand)
+        world.initially[f"(of {self.holder} {world.agent})"] = None
+        self.posture = world.new(f"{ee}_start", "posture")
+        if not any(p.condition.kind == "contact" for p in steps[0].upar.preparation):
+            world.initially[f"(in_posture {self.holder} {self.posture})"] = None
+        self.places: dict[str, str] = {}
+        self.counts: dict[str, int] = {}
+        self.touched: dict[str, bool] = {}
+        """Whether the last word on each contact of the end-effector is that there is one."""
+
+    def go_through(self) -> None:
+        """State every step, then the goal."""
+        world, holder = self.world, self.holder
+        for planned in self.steps:
+            self._step(planned, world.names[planned.upar])
+        for other, holds in self.touched.items():
+            atom = f"(contact {holder} {thing_word(other)})"
+            world.goal[atom if holds else f"(not {atom})"] = None
+        for thing, place in self.places.items():
+            world.goal[f"(at {holder} {thing_word(thing)} {place})"] = None
+        if self.steps[-1].rests:
+            world.goal[f"(in_posture {holder} {self.posture})"] = None
+
+    def _step(self, planned: PlanStep, name: str) -> None:
+        world, holder, what = self.world, self.holder, planned.ipar.objects
+        constant = action_constant(name)
+        arguments = [holder, world.agent, *map(thing_word, what)]
+        # Who did it is capable of it, and so is what it was done with (thesis 4.6.1.4).
+        for condition in planned.upar.applicability:
+            who = bound_condition(planned.upar, planned.ipar, condition)[0]
+            known = world.agent if who == planned.ipar.agent else thing_word(who)
+            world.initially[f"(capable {known} {constant})"] = None
+        after = self.posture
         if planned.rests:
-            after = _new(world, f"{ee}_{planned.ipar.posture or 'end'}", "posture")
-            _state(world.initially, f"(ends_in {action_constant(name)} {holder} {after})")
+            after = world.new(f"{self.ee}_{planned.ipar.posture or 'end'}", "posture")
+            world.initially[f"(ends_in {constant} {holder} {after})"] = None
         if what:
-            arguments += _at_places(world, (ee, holder, name), planned, places, counts)
-            _state_contacts(world, (holder, planned), touched)
+            arguments += self._at_places(planned, constant)
+            self._contacts(planned)
             if any(p.condition.kind == "posture" for p in planned.upar.preparation):
-                arguments.append(posture)
+                arguments.append(self.posture)
             if planned.rests:
                 arguments.append(after)
             if planned.lasts and not planned.moves:
-                _state(world.goal, f"(lasted {action_constant(name)} {holder} {places[what[0]]})")
+                world.goal[f"(lasted {constant} {holder} {self.places[what[0]]})"] = None
         else:
-            arguments += [posture, after]
-            _state(world.goal, f"(rested {action_constant(name)} {holder} {after})")
-        posture = after
+            arguments += [self.posture, after]
+            world.goal[f"(rested {constant} {holder} {after})"] = None
+        self.posture = after
         world.observed.append(PddlStep(name, tuple(arguments)))
-    _finally(world, holder, steps[-1], touched, places, posture)
 
+    def _at_places(self, planned: PlanStep, constant: str) -> list[str]:
+        """From where to where a step moves its dominant object, and what that touches there."""
+        world, holder, thing = self.world, self.holder, planned.ipar.objects[0]
+        if thing not in self.places:
+            self.places[thing] = world.new(f"{self.ee}_{thing}_0", "place")
+            world.initially[f"(at {holder} {thing_word(thing)} {self.places[thing]})"] = None
+        here = there = self.places[thing]
+        if planned.moves:
+            self.counts[thing] = self.counts.get(thing, 0) + 1
+            there = world.new(f"{self.ee}_{thing}_{self.counts[thing]}", "place")
+            self.places[thing] = there
+            world.initially[f"(leads {constant} {holder} {here} {there})"] = None
+        needed = [preparation.condition for preparation in planned.upar.preparation]
+        for place, conditions in ((here, needed), (there, planned.upar.post_assertions)):
+            for each in conditions:
+                if each.kind == "contact" and each.arguments[0] != HOLDER and each.holds:
+                    other = thing_word(bound_condition(planned.upar, planned.ipar, each)[1])
+                    world.initially[f"(meets {place} {other})"] = None
+        return [here, there] if planned.moves else [here]
 
-def _state_capable(world: _World, planned: PlanStep, name: str, agent: str) -> None:
-    """Who did it is capable of it, and so is what it was done with (thesis 4.6.1.4)."""
-    for condition in planned.upar.applicability:
-        who = bound_condition(planned.upar, planned.ipar, condition)[0]
-        known = agent if who == planned.ipar.agent else thing_word(who)
-        _state(world.initially, f"(capable {known} {action_constant(name)})")
-
-
-def _at_places(
-    world: _World,
-    who: tuple[str, str, str],
-    planned: PlanStep,
-    places: dict[str, str],
-    counts: dict[str, int],
-) -> list[str]:
-    """From where to where a step moves its dominant object, and what that touches there."""
-    ee, holder, name = who
-    thing = planned.ipar.objects[0]
-    if thing not in places:
-        places[thing] = _new(world, f"{ee}_{thing}_0", "place")
-        world.initially.append(f"(at {holder} {thing_word(thing)} {places[thing]})")
-    here = there = places[thing]
-    if planned.moves:
-        counts[thing] = counts.get(thing, 0) + 1
-        there = places[thing] = _new(world, f"{ee}_{thing}_{counts[thing]}", "place")
-        world.initially.append(f"(leads {action_constant(name)} {holder} {here} {there})")
-    needed = [preparation.condition for preparation in planned.upar.preparation]
-    for place, conditions in ((here, needed), (there, planned.upar.post_assertions)):
-        for condition in conditions:
-            if condition.kind == "contact" and condition.arguments[0] != HOLDER and condition.holds:
-                other = thing_word(bound_condition(planned.upar, planned.ipar, condition)[1])
-                _state(world.initially, f"(meets {place} {other})")
-    return [here, there] if planned.moves else [here]
-
-
-def _state_contacts(world: _World, at: tuple[str, PlanStep], touched: dict[str, bool]) -> None:
-    """A contact that a first step needs is there from the start; the last word on each counts."""
-    holder, planned = at
-    for preparation in planned.upar.preparation:
-        condition = preparation.condition
-        if condition.kind == "contact" and condition.arguments[0] == HOLDER:
-            other = bound_condition(planned.upar, planned.ipar, condition)[1]
-            if other not in touched:
-                world.initially.append(f"(contact {holder} {thing_word(other)})")
-                touched[other] = True
-    for condition in planned.upar.post_assertions:
-        if condition.arguments[0] == HOLDER:
-            touched[bound_condition(planned.upar, planned.ipar, condition)[1]] = condition.holds
-
-
-def _finally(
-    world: _World,
-    holder: str,
-    last: PlanStep,
-    touched: dict[str, bool],
-    places: dict[str, str],
-    posture: str,
-) -> None:
-    for other, holds in touched.items():
-        atom = f"(contact {holder} {thing_word(other)})"
-        world.goal.append(atom if holds else f"(not {atom})")
-    world.goal += [f"(at {holder} {thing_word(thing)} {place})" for thing, place in places.items()]
-    if last.rests:
-        world.goal.append(f"(in_posture {holder} {posture})")
-
-
-def _new(world: _World, name: str, kind: str) -> str:
-    made = word(name)
-    world.objects[made] = kind
-    return made
-
-
-def _state(atoms: list[str], atom: str) -> None:
-    if atom not in atoms:
-        atoms.append(atom)
-
-
-def _problem(source: PlanSource, world: _World) -> str:
-    return "\n".join(_problem_lines(source, world)) + "\n"
-
-
-def _problem_lines(source: PlanSource, world: _World) -> Iterator[str]:
-    name = word(source.name)
-    yield f"(define (problem {name}_observed)"
-    yield f"  (:domain {name})"
-    yield "  (:objects"
-    yield from (f"    {name} - {kind}" for name, kind in world.objects.items())
-    yield "  )"
-    yield "  (:init"
-    yield from (f"    {atom}" for atom in world.initially)
-    yield "  )"
-    yield "  (:goal (and"
-    yield from (f"    {atom}" for atom in world.goal)
-    yield "  ))"
-    yield ")"
+    def _contacts(self, planned: PlanStep) -> None:
+        """A contact that a first step needs is there from the start."""
+        for condition in (preparation.condition for preparation in planned.upar.preparation):
+            if condition.kind == "contact" and condition.arguments[0] == HOLDER:
+                other = bound_condition(planned.upar, planned.ipar, condition)[1]
+                if other not in self.touched:
+                    self.world.initially[f"(contact {self.holder} {thing_word(other)})"] = None
+                    self.touched[other] = True
+        for condition in planned.upar.post_assertions:
+            if condition.arguments[0] == HOLDER:
+                other = bound_condition(planned.upar, planned.ipar, condition)[1]
+                self.touched[other] = condition.holds

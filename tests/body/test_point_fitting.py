@@ -470,7 +470,6 @@ def test_a_fit_is_exported_and_its_bvh_reads_back(walking: Path) -> None:
     asked = CliRunner().invoke(app, ["fit", str(walking), "--json", *options])
     assert asked.exit_code == 0, asked.output
     assert all(path.stat().st_size for path in files.values())
-    assert any("floor" in each for each in json.loads(asked.stdout)["warnings"])
     joints = read_recording(files["bvh"]).bodies
     markers = read_recording(walking / "walk.trc").markers
     ankles = (markers["RANK"][30], markers["LANK"][30])

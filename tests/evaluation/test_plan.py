@@ -1,12 +1,22 @@
-"""Captures are paired with label files by patterns and by evaluation files."""
+"""Plans pair captures with labels, and a mapping gives each segment the label of its first rule."""
 
 from pathlib import Path
 
 import pytest
+from observations import drink_from_mug, with_unknown
 
 from capar.evaluation.labels import Kind
-from capar.evaluation.plan import read_pairs, read_plan
-from capar.model.errors import CaparError
+from capar.evaluation.plan import (
+    LabelMapping,
+    check_names,
+    labelled,
+    read_mapping,
+    read_pairs,
+    read_plan,
+)
+from capar.evaluation.scoring import known_names
+from capar.model.errors import CaparError, UnknownNameError
+from capar.model.observation import Observation
 
 TAKES = 'name = "c"\ntakes = ["take0", "take1", { take = "x1", object = "mug" }]\n'
 
@@ -31,11 +41,6 @@ def test_a_pattern_stands_for_each_take_that_fits(bundle: Path) -> None:
     ]
 
 
-def test_other_words_of_a_take_are_filled_in_too(bundle: Path) -> None:
-    (pair,) = read_pairs([f"{bundle}:x1", "{object}_{take}.csv"])
-    assert str(pair.labels) == "mug_x1.csv"
-
-
 def test_one_label_file_for_several_takes_is_refused(bundle: Path) -> None:
     with pytest.raises(CaparError, match="is one label file for 2 takes"):
         read_pairs([f"{bundle}:take*", "labels.csv"])
@@ -55,17 +60,6 @@ def test_an_evaluation_file_names_takes_groups_and_labels_beside_itself(bundle: 
     assert plan.groups == {"zero": ("take0",)}
 
 
-def test_takes_of_an_evaluation_file_can_be_picked(bundle: Path) -> None:
-    path = plan_of(bundle, 'kind = "carries"\nlabels = "{take}.csv"\n')
-    assert [each.name for each in read_plan(path, takes=["x*", "*1"]).pairs] == ["take1", "x1"]
-
-
-def test_a_bundle_without_takes_is_called_by_its_folder(tmp_path: Path) -> None:
-    (tmp_path / "capture.toml").write_text('name = "c"\n')
-    (pair,) = read_plan(plan_of(tmp_path, 'kind = "events"\nlabels = "l.csv"\n')).pairs
-    assert pair.name == tmp_path.name
-
-
 @pytest.mark.parametrize(
     ("text", "says"),
     [
@@ -81,4 +75,117 @@ def test_a_bundle_without_takes_is_called_by_its_folder(tmp_path: Path) -> None:
 def test_a_bad_evaluation_file_is_refused_with_its_line(text: str, says: str, bundle: Path) -> None:
     with pytest.raises(CaparError) as raised:
         read_plan(plan_of(bundle, text))
+    assert says in str(raised.value)
+
+
+def mapping(folder: Path, text: str) -> LabelMapping:
+    path = folder / "mapping.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_mapping(path)
+
+
+def rule(**conditions: str) -> str:
+    return "[[rule]]\n" + "".join(f'{key} = "{value}"\n' for key, value in conditions.items())
+
+
+REST = rule(name="*", label="rest")
+
+
+def labels(seen: Observation, given: LabelMapping) -> list[str]:
+    return [each.label for each in labelled(seen.links[0], given)]
+
+
+def test_the_first_rule_that_fits_gives_the_label(tmp_path: Path) -> None:
+    text = rule(name="MoveObjTo", object="mouth", label="bring") + rule(
+        name="MoveObjTo", label="place"
+    )
+    assert labels(drink_from_mug(), mapping(tmp_path, text + REST)) == [
+        "rest",
+        "bring",
+        "rest",
+        "place",
+        "rest",
+        "rest",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("conditions", "fits"),
+    [
+        ({"name": "*", "dominant": "mug"}, [0, 1, 2, 3, 4, 5]),
+        ({"name": "*", "dominant": "table"}, []),
+        ({"name": "*", "object": "table"}, [3, 4]),
+        ({"name": "*", "position": "before first"}, [0]),
+        ({"name": "*", "position": "after last"}, [5]),
+        ({"name": "*", "previous": ""}, [0]),
+        ({"name": "*", "next": ""}, [5]),
+        ({"name": "*", "previous": "MoveObjTo"}, [2, 4]),
+        ({"name": "MoveObjTo", "next": "TouchWith"}, [3]),
+        ({"name": "Reach", "next": "TouchWith"}, []),
+    ],
+)
+def test_each_condition_picks_its_segments(
+    conditions: dict[str, str], fits: list[int], tmp_path: Path
+) -> None:
+    given = mapping(tmp_path, rule(**conditions, label="yes") + REST)
+    found = labels(drink_from_mug(), given)
+    assert [index for index, each in enumerate(found) if each == "yes"] == fits
+
+
+def test_a_segment_that_no_rule_fits_is_named_with_the_rules_there_are(tmp_path: Path) -> None:
+    with pytest.raises(UnknownNameError) as raised:
+        labels(drink_from_mug(), mapping(tmp_path, rule(name="Reach", label="a")))
+    assert "right_hand from 1.72 s: no fitting rule for 'MoveObjTo'" in str(raised.value)
+    assert raised.value.known == ["Reach"]
+
+
+def test_unknown_segments_are_mapped_by_that_name(tmp_path: Path) -> None:
+    text = rule(name="Unknown", label="odd") + REST
+    assert labels(with_unknown(), mapping(tmp_path, text)) == ["rest", "odd"]
+
+
+@pytest.mark.parametrize(
+    ("conditions", "says"),
+    [
+        ({"name": "Raech", "label": "a"}, "mapping.toml:2: no action 'Raech'"),
+        ({"name": "Reach", "label": "a", "object": "mgu"}, "no object 'mgu'"),
+        ({"name": "Reach", "label": "a", "next": "Lit"}, "no action 'Lit'"),
+    ],
+)
+def test_a_name_that_does_not_exist_is_refused_with_those_that_do(
+    conditions: dict[str, str], says: str, tmp_path: Path
+) -> None:
+    given = mapping(tmp_path, rule(**conditions))
+    with pytest.raises(UnknownNameError) as raised:
+        check_names(given, names=["Reach", "Touch"], objects=["mug"], labels=["a"])
+    assert says in str(raised.value)
+
+
+def test_a_label_in_no_label_file_is_a_notice_with_its_line(tmp_path: Path) -> None:
+    given = mapping(tmp_path, rule(name="Reach", label="b") + rule(name="Touch", label="b"))
+    (notice,) = check_names(given, names=["Reach", "Touch"], objects=[], labels=["a"])
+    assert notice.endswith("mapping.toml:2: the label 'b' is in no label file")
+
+
+def test_the_names_of_the_rules_that_ship_are_known_even_if_not_observed() -> None:
+    assert {"Reach", "Hit", "Touch", "TouchWith", "MoveObj", "MoveObjTo", "ResumePosture"} <= (
+        known_names([])
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "is empty"),
+        ("# nothing yet\n", "has no rule"),
+        ("rules = 3", "no key 'rules'"),
+        (rule(name="Reach"), "'label' is missing"),
+        (rule(name="Reach", label="a", when="now"), "no key 'when'"),
+        (rule(name="Reach", label="a", position="third"), "no position 'third'"),
+        ("[[rule]\n", "mapping.toml"),
+    ],
+)
+def test_a_bad_mapping_is_refused(text: str, says: str, tmp_path: Path) -> None:
+    with pytest.raises(CaparError) as raised:
+        mapping(tmp_path, text)
     assert says in str(raised.value)

@@ -8,17 +8,20 @@ import sys
 from base64 import b64decode
 from dataclasses import replace
 from io import BytesIO
+from itertools import combinations
 from pathlib import Path
 
 import motions
 import numpy as np
 import pytest
 import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from matplotlib.image import imread
 
 from capar.cli import main
 from capar.pipelines.observation import observe
-from capar.views.viewer.snapshot import snapshot
+from capar.views.viewer.snapshot import Box, Labelled, meet, place_labels, snapshot
 from capar.views.viewer.stage import stage
 from capar.views.viewer.web_page import web_page
 
@@ -114,15 +117,6 @@ def test_a_picture_shows_another_moment_otherwise_and_the_same_alike(capture, tm
     assert drawn[0] == drawn[1] != drawn[2]
 
 
-def test_a_moment_that_is_asked_for_is_shown_though_frames_are_thinned(capture):
-    every = stage(capture).times
-    left_out = sorted(set(capture.times.tolist()) - set(every.tolist()))
-    for time_s in left_out[:2]:
-        shown = stage(capture, at_s=time_s)
-        assert shown.times[shown.nearest(time_s)] == time_s
-        assert len(shown.times) == len(every) + 1
-
-
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
@@ -186,3 +180,29 @@ def test_a_browser_scrubs_plays_and_goes_to_a_segment_that_is_clicked(page, tmp_
     assert told["now"]
     assert told["playing"] == "Pause"
     assert float(told["played"].split()[0]) > float(told["clicked"].split()[0]) + 0.3
+
+
+PAGE = (9.0, 6.6)
+places = st.tuples(st.floats(3.0, 6.0), st.floats(2.0, 4.5))
+SCENES = 25
+"""So many scenes are tried: one takes a quarter of a second."""
+
+bodies = st.lists(st.tuples(places, st.floats(0.05, 0.6), st.floats(0.3, 1.0)), max_size=12)
+
+
+def labelled(place: tuple[float, float], half: float, wide: float) -> Labelled:
+    x, y = place
+    box: Box = (x - half, x + half, y - half, y + half)
+    return Labelled(box, (wide, 0.17))
+
+
+@settings(max_examples=SCENES)
+@given(bodies)
+def test_no_name_stands_on_another_or_leaves_the_page(
+    parts: list[tuple[tuple[float, float], float, float]],
+) -> None:
+    boxes = place_labels([labelled(*part) for part in parts], PAGE)
+    for one, other in combinations(boxes, 2):
+        assert not meet(one, other)
+    for box in boxes:
+        assert box[0] >= 0.0 and box[1] <= PAGE[0] and box[2] >= 0.0 and box[3] <= PAGE[1]
