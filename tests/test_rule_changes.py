@@ -153,8 +153,8 @@ def test_observations_of_another_profile_are_left_alone_and_said_so(kept):
     (kept / "hoist.lp").write_text(LIFT.replace("Lift", "Hoist"))
     command = ["rules", "diff", str(kept / "hoist.lp"), "--actionary", place]
     told = CliRunner().invoke(app, command, catch_exceptions=False)
-    assert told.stdout == "0 segments change: none that was observed gets another name\n"
-    assert told.stderr == "1 observation was made with another profile: left alone\n"
+    assert told.stdout == "segments that change: 0\n"
+    assert told.stderr == "observations made with another profile, left alone: 1\n"
 
 
 def test_what_is_compared_with_is_the_name_that_is_stored(kept):

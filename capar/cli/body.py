@@ -1,25 +1,28 @@
 """Bodies: fit one to a capture, let a virtual one perform, map a performance to another."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from capar.cli.options import Assume, NewBundle
+from capar.cli.options import Assume, Capture, Json, NewBundle
+from capar.cli.output import check_new_folder, print_json, written
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from capar.body.sensor_fitting import Fit
 
+AT_LIMIT = 0.01
+"""From this share of the time on, a joint at the end of its range is printed [1]."""
+
+OPEN_HAND = ("knuckle", "finger", "thumb")
+"""Joints that are at the end of their range in an open hand."""
+
 
 def fit(
-    capture: Annotated[
-        str,
-        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
-    ],
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+    capture: Capture,
+    json: Json = False,
     bvh: Annotated[
         Path | None, typer.Option(help="Write the skeleton's motion: BVH, y up, centimetres.")
     ] = None,
@@ -39,9 +42,10 @@ def fit(
         Path | None, typer.Option(help="Write the body as a MuJoCo model; --npz has its qpos.")
     ] = None,
 ) -> None:
-    """Fit a human body to the joints, markers or sensors of CAPTURE and say what is left.
+    """Fit a human body to a capture, and print the residuals.
 
-    To sensors it is fitted again, with limb lengths from the motion, where that is needed.
+    It follows joints, markers or sensors. Where sensors need it, limb lengths come from the
+    motion.
     """
     from capar.body.body_fitting import fit_body, fit_warnings
     from extractors.readers.bundle.capture_toml import read_capture
@@ -50,17 +54,16 @@ def fit(
     made = fit_body(capture, recorded)
     warnings = fit_warnings(capture, recorded, made)
     _write(made, {"bvh": bvh, "glb": glb, "c3d": c3d, "npz": npz, "csv": csv, "mjcf": mjcf})
-    if as_json:
-        typer.echo(json.dumps({**_answer(made), "warnings": warnings}, indent=2))
+    if json:
+        print_json({**_answer(made), "warnings": warnings})
     else:
-        _tell(made)
+        _print_fit(made)
         for warning in warnings:
             typer.echo(f"warning: {warning}")
 
 
 def _write(made: "Fit", wanted: "Mapping[str, Path | None]") -> None:
     """Write the files that are wanted, each whole or not at all."""
-    from capar.cli.output import written
     from capar.export.bvh import bvh_text
     from capar.export.c3d import c3d_bytes
     from capar.export.glb import glb_bytes
@@ -88,19 +91,30 @@ def _answer(made: "Fit") -> dict[str, Any]:
     """Residuals by sensor, joint or marker, shares of time at joint limits, and the time taken."""
     import numpy as np
 
+    def median_deg(place: str) -> float | None:
+        """Median angle from a sensor; None for joints and markers, which are points."""
+        turned = made.residuals_rad.get(place)
+        return None if turned is None else round(float(np.degrees(np.nanmedian(turned))), 4)
+
+    shares = dict(zip(made.human.joints, made.at_limit.mean(axis=0), strict=True))
+    at_limit = {
+        name: round(float(share), 4)
+        for name, share in shares.items()
+        if share >= AT_LIMIT and not any(part in name for part in OPEN_HAND)
+    }
     return {
         "sensors": {
             place: {
                 "median_mm": round(1e3 * float(np.nanmedian(metres)), 3),
                 "p95_mm": round(1e3 * float(np.nanpercentile(metres, 95)), 3),
-                "median_deg": _median_deg(made, place),
+                "median_deg": median_deg(place),
                 "lost_frames": int(made.bridged[place].sum()),
             }
             for place, metres in made.residuals_m.items()
         },
         "median_mm": round(1e3 * float(np.nanmedian([*made.residuals_m.values()])), 3),
         "stature_m": round(made.human.measures["stature"], 4),
-        "at_limit": _at_limit(made),
+        "at_limit": dict(sorted(at_limit.items(), key=lambda row: (-row[1], row[0]))),
         "measures_given": sorted(made.human.measures.given),
         "frames": len(made.times),
         "motion_s": round(float(made.times[-1] - made.times[0]), 4),
@@ -108,16 +122,7 @@ def _answer(made: "Fit") -> dict[str, Any]:
     }
 
 
-def _median_deg(made: "Fit", place: str) -> float | None:
-    """Median angle from a sensor; None for joints and markers, which are points."""
-    import numpy as np
-
-    if place not in made.residuals_rad:
-        return None
-    return round(float(np.degrees(np.nanmedian(made.residuals_rad[place]))), 4)
-
-
-def _tell(made: "Fit") -> None:
+def _print_fit(made: "Fit") -> None:
     """Print the same for people."""
     answer = _answer(made)
     wide = max(14, *map(len, answer["sensors"]))
@@ -135,18 +140,6 @@ def _tell(made: "Fit") -> None:
     typer.echo(f"measures given: {given}; the others are estimated")
     span, took = answer["motion_s"], answer["seconds"]
     typer.echo(f"{answer['frames']} frames, {span:.1f} s of motion, fitted in {took:.1f} s")
-
-
-def _at_limit(made: "Fit") -> dict[str, float]:
-    """Hinges that are at an end of their range for 1 % of the time or more, most first."""
-    shares = dict(zip(made.human.joints, made.at_limit.mean(axis=0), strict=True))
-    kept = {n: round(float(s), 4) for n, s in shares.items() if s >= 0.01 and not _idle(n)}
-    return dict(sorted(kept.items(), key=lambda each: (-each[1], each[0])))
-
-
-def _idle(joint: str) -> bool:
-    """Whether a hinge stands at an end of its range when nothing moves it: open hands."""
-    return any(part in joint for part in ("knuckle", "finger", "thumb"))
 
 
 def perform(
@@ -168,7 +161,7 @@ def perform(
     ] = False,
     seed: Annotated[int, typer.Option(help="The draw of the noise.", min=0)] = 3,
 ) -> None:
-    """Let a virtual body perform ACTION at a table, and write what a tracker records of it.
+    """Let a virtual body perform an action, and write the capture.
 
     The capture bundle has sensors on hands and head, the things that are handled, and what
     is exactly so beside it (truth.toml): it serves to try every other command.
@@ -181,7 +174,6 @@ def perform(
         performed,
         performed_together,
     )
-    from capar.cli.output import check_new_folder
 
     check_new_folder(output)
     if action in JOINT_ACTIONS:
@@ -205,10 +197,7 @@ def perform(
 
 
 def map_command(
-    capture: Annotated[
-        str,
-        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
-    ],
+    capture: Capture,
     agent: Annotated[
         str, typer.Option(help="Who performs: man, woman, child, or same for the one recorded.")
     ] = "same",
@@ -222,9 +211,11 @@ def map_command(
         ),
     ] = 0.0,
     assume: Assume = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False,
+    json: Json = False,
 ) -> None:
-    """Map CAPTURE directly to another body in the recorded scene: the baseline of `regenerate`.
+    """Map a capture directly to another body, without planning.
+
+    It stays in the recorded scene, and is the baseline of `capar regenerate`.
 
     Hands and things go where they were recorded; what met the performer's head meets the new one's.
     Nothing is planned: no grip is fitted to the hand, and no obstacle is avoided. Every gate is
@@ -232,7 +223,6 @@ def map_command(
     """
     from dataclasses import replace
 
-    from capar.cli.output import check_new_folder, print_json
     from capar.cli.regenerate import print_quality, quality_answer
     from capar.pipelines.round_trips import SAME, body, observed_source
     from capar.regeneration import map_directly

@@ -177,7 +177,7 @@ def new_capture(
         bool, typer.Option("--schema", help="Print the JSON schema of capture.toml, for editors.")
     ] = False,
 ) -> None:
-    """Write a commented capture.toml for motion files, to be edited.
+    """Write a commented capture.toml for motion files.
 
     It is read back at once, and the lines that need a look are listed.
     """

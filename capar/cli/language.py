@@ -8,7 +8,23 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from capar.cli.options import Beside, New, Rules, confirm_new, opened, rule_base
+from capar.cli.options import (
+    Beside,
+    Capture,
+    Corrected,
+    Json,
+    New,
+    OutputFile,
+    Place,
+    ProfileName,
+    Rules,
+    confirm_new,
+    open_words,
+    opened,
+    rule_base,
+    rule_words,
+)
+from capar.cli.output import check_writable, emit, print_json
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -27,30 +43,18 @@ class Detail(StrEnum):
 
 
 def describe(
-    capture: Annotated[
-        str,
-        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
-    ],
+    capture: Capture,
     detail: Annotated[
         Detail, typer.Option(help="Every step, or a summary of what changed.")
     ] = Detail.STEPS,
     timed: Annotated[bool, typer.Option("--timed", help="Say when each step was.")] = False,
-    profile: Annotated[
-        str, typer.Option(help="The rules to reason with: extended, or thesis to the letter.")
-    ] = "extended",
-    corrected: Annotated[
-        bool,
-        typer.Option(
-            "--corrected", help="Say what persons claim of segments (`capar correct`) instead."
-        ),
-    ] = False,
+    profile: ProfileName = "extended",
+    corrected: Corrected = False,
     rules: Rules = None,
     actionary: Beside = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Json = False,
 ) -> None:
-    """Say in plain English what was done in CAPTURE."""
-    from capar.cli.options import rule_words
-    from capar.cli.output import print_json
+    """Say in plain English what was done in a capture."""
     from capar.pipelines.observation import observe
     from capar.views.notices import reservation_lines, reservations_on_told
     from kb.language.describe import describe as told
@@ -89,19 +93,17 @@ def parse(
         str,
         typer.Argument(help="Such as: pick up the mug with both hands and put it in the box"),
     ],
-    actionary: Annotated[
-        str | None, typer.Option(help="Folder or address; else CAPAR_ACTIONARY, else ./actionary.")
-    ] = None,
+    actionary: Place = None,
     rules: Rules = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Json = False,
 ) -> None:
-    """Read instructions, a description, or a question such as 'who moved the mug to the table?'.
+    """Read instructions, a description, or a question in English.
+
+    A question is one such as 'who moved the mug to the table?'.
 
     With an Actionary, objects and performers are those that it knows, and a question is answered;
     without one any noun will do.
     """
-    from capar.cli.options import open_words, rule_words
-    from capar.cli.output import print_json
     from capar.pipelines.language import vocabulary
     from kb.language import Question
     from kb.language import parse as read
@@ -120,7 +122,6 @@ def parse(
 
 
 def _ask(value: "Question", store: "Store | None", *, json: bool) -> None:
-    from capar.cli.output import print_json
     from capar.views.readings import answer_lines, question_lines
 
     queries = (value.sparql, *value.others)
@@ -159,15 +160,15 @@ def verb(
     kinds: Annotated[
         bool, typer.Option("--kinds", help="Which primitives do the verb, or a kind of it?")
     ] = False,
-    actionary: Annotated[
-        str | None, typer.Option(help="Folder or address; else CAPAR_ACTIONARY, else ./actionary.")
-    ] = None,
+    actionary: Place = None,
     rules: Rules = None,
     most: Annotated[int, typer.Option(help="How many verbs of a segment to show.", min=1)] = 15,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Json = False,
 ) -> None:
-    """Say what is known of a verb: senses, classes, roles, primitives, and where it was seen."""
-    from capar.cli.options import open_words, rule_words
+    """Say what is known of a verb, or which verbs fit a segment.
+
+    That is its senses, classes, roles, primitives, and where it was seen.
+    """
     from capar.model.errors import CaparError
 
     if bool(lemma) == bool(segment):
@@ -196,7 +197,6 @@ def verb(
 
 
 def _print_verb(answer: "VerbAnswer", *, json: bool) -> None:
-    from capar.cli.output import print_json
     from kb.lexicon.verbs import often, summed
 
     if json:
@@ -248,7 +248,6 @@ def _print_classes(console: "Console", answer: "VerbAnswer") -> None:
 
 
 def _print_kinds(lemma: str, names: tuple[str, ...], store: "Store | None", *, json: bool) -> None:
-    from capar.cli.output import print_json
     from kb.lexicon.verbs import often, seen_in, summed
 
     seen = [each for each in (seen_in(store) if store else ()) if each.primitive in names]
@@ -261,7 +260,6 @@ def _print_kinds(lemma: str, names: tuple[str, ...], store: "Store | None", *, j
 
 
 def _print_fits(fits: "tuple[Fit, ...]", *, json: bool) -> None:
-    from capar.cli.output import print_json
 
     if json:
         print_json(fits, sort_keys=True)
@@ -276,15 +274,10 @@ def _print_fits(fits: "tuple[Fit, ...]", *, json: bool) -> None:
 
 lexicon = typer.Typer(no_args_is_help=True, help="Words in an Actionary: WordNet, Levin, VerbNet.")
 
-Where = Annotated[
-    str | None, typer.Option(help="Folder or address; else CAPAR_ACTIONARY, else ./actionary.")
-]
-
 
 @lexicon.command()
-def load(actionary: Where = None, rules: Rules = None, new: New = False) -> None:
-    """Put WordNet's verbs, Levin's classes and the primitives' links into the Actionary, once."""
-    from capar.cli.options import rule_words
+def load(actionary: Place = None, rules: Rules = None, new: New = False) -> None:
+    """Load WordNet's verbs, Levin's classes and primitives' links, once."""
     from kb.actionary import Actionary
     from kb.lexicon.loading import load_words
 
@@ -299,12 +292,11 @@ def load(actionary: Where = None, rules: Rules = None, new: New = False) -> None
 def import_words(
     source: Annotated[str, typer.Argument(help="What to import: verbnet.")],
     folder: Annotated[Path, typer.Argument(help="The folder with VerbNet's XML files.")],
-    actionary: Where = None,
+    actionary: Place = None,
     new: New = False,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Json = False,
 ) -> None:
-    """Read VerbNet 3.x from your own copy into the Actionary, in place of an earlier one."""
-    from capar.cli.output import print_json
+    """Read VerbNet 3.x from your own copy, in place of an earlier one."""
     from capar.model.errors import UnknownNameError
     from kb.actionary import Actionary
     from kb.lexicon.loading import load_verbnet
@@ -361,43 +353,26 @@ class Format(StrEnum):
 
 @reports.command()
 def linguistics(
-    actionary: Annotated[
-        str | None, typer.Option(help="Folder or address; else CAPAR_ACTIONARY, else ./actionary.")
-    ] = None,
+    actionary: Place = None,
     form: Annotated[
         Format, typer.Option("--format", help="How to write it; svg is the drawing alone.")
     ] = Format.TEXT,
     rules: Rules = None,
-    out: Annotated[Path | None, typer.Option(help="A file, instead of standard output.")] = None,
+    output: OutputFile = None,
     cases: Annotated[
         Path | None, typer.Option(help="Folder of rule cases that count as proof, as tests/rules.")
     ] = None,
-    corrected: Annotated[
-        bool,
-        typer.Option("--corrected", help="Count what persons say of segments (`capar correct`)."),
-    ] = False,
+    corrected: Corrected = False,
     json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
 ) -> None:
-    """Which verbs and classes of verbs the system addresses, with what proves it."""
-    from capar.cli.options import open_words
-    from capar.cli.output import check_writable, written
+    """Report which verbs and verb classes are addressed, with the proof."""
     from capar.pipelines.linguistic_report import cases_of, primitive_files
     from capar.pipelines.linguistic_report import linguistics as report_of
     from kb.reports.formats import write
 
-    if out is not None:
-        check_writable(out)
+    if output is not None:
+        check_writable(output)
     files = primitive_files(rule_base("extended", rules, opened(actionary)).added)
-    with open_words(actionary) as opened_store:
-        store = opened_store
-        if corrected and store is not None:
-            from kb.corrections import corrected as corrected_copy
-
-            store = corrected_copy(store)
+    with open_words(actionary, corrected=corrected) as store:
         report = report_of(files, store=store, cases=cases_of(files, cases))
-    text = write(report, Format.JSON.value if json else form.value)
-    if out is None:
-        typer.echo(text, nl=False)
-        return
-    with written(out) as draft:
-        draft.write_text(text, encoding="utf-8")
+    emit(write(report, Format.JSON.value if json else form.value), output)

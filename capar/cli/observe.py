@@ -243,7 +243,7 @@ def demo(
         Path, typer.Option(help="Where to draw the picture: a .png, .svg or .pdf file.")
     ] = Path("drink_from_mug.png"),
 ) -> None:
-    """Observe the shipped capture of drinking from a mug, and draw it."""
+    """Observe the shipped capture of drinking, and draw it."""
     from importlib import resources
 
     with resources.as_file(resources.files("capar") / "demo" / "drink_from_mug") as bundle:

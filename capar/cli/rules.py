@@ -1,25 +1,90 @@
 """The commands for rules that people write, from a first draft to their place in the rule base."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import asdict
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli.options import Place, Rules, has_actionary, opened, require_actionary, rule_base
-from capar.cli.output import print_json
+from capar.cli.options import (
+    Json,
+    OutputFile,
+    Place,
+    ProfileName,
+    Rules,
+    has_actionary,
+    opened,
+    require_actionary,
+    rule_base,
+)
+from capar.cli.output import check_writable, emit, print_json
 
 if TYPE_CHECKING:
     from capar.rulebook.changes import Renamed
-    from capar_rules.authoring.glossary import Glossary, Word
+    from capar_rules.authoring.glossary import Glossary
     from capar_rules.lint.audit import Audit
 
+rules = typer.Typer(no_args_is_help=True, help="Write, check, add and remove primitives as rules.")
 
-Base = Annotated[str, typer.Option("--profile", help="The rules: extended or thesis.")]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+File = Annotated[Path, typer.Argument(help="A rule file.")]
+Reclassify = Annotated[
+    bool, typer.Option("--reclassify", help="Rename the stored segments that this changes.")
+]
+Captures = Annotated[
+    list[Path] | None,
+    typer.Option(help="With --reclassify: a folder that holds captures; else this one."),
+]
 
 
+def _others(file: Path, project: Path | None, actionary: str | None) -> tuple[Path, ...]:
+    """The rule files that people wrote, without this one."""
+    from capar_rules.authoring.user_rules import user_rules
+
+    files = user_rules(project, actionary=opened(actionary))
+    return tuple(each for each in files if each.resolve() != file.resolve())
+
+
+@rules.command("list")
+def list_rules(
+    profile: ProfileName = "extended",
+    rules: Rules = None,
+    actionary: Place = None,
+    json: Json = False,
+) -> None:
+    """List every primitive: its origin, what it specialises, what it is.
+
+    Rules that ship are core, those in the Actionary's folder rules are user, and those in a folder
+    that --rules or CAPAR_RULES names, or else in ./rules, are project.
+    """
+    from capar_rules.authoring.user_primitives import rules_of
+
+    place = opened(actionary)
+    found = rules_of(rule_base(profile, rules, place), actionary=place)
+    if json:
+        print_json([asdict(each) for each in found])
+        return
+    for entry in found:
+        general = f" < {', '.join(entry.general)}" if entry.general else ""
+        typer.echo(f"{entry.origin}  {entry.name}{general}: {entry.definition}")
+
+
+@rules.command()
+def show(
+    name: Annotated[str, typer.Argument(help="A primitive.")],
+    profile: ProfileName = "extended",
+    rules: Rules = None,
+    actionary: Place = None,
+) -> None:
+    """Print the rule file of a primitive."""
+    from capar_rules.authoring.user_primitives import rule_of
+
+    info = rule_of(rule_base(profile, rules, opened(actionary)), name)
+    typer.echo(Path(info.file).read_text(encoding="utf-8"), nl=False)
+
+
+@rules.command()
 def new(
     name: Annotated[str, typer.Argument(help="What the primitive is called, such as Lift.")],
     source: Annotated[
@@ -37,13 +102,12 @@ def new(
     definition: Annotated[str, typer.Option(help="What it is, in words.")] = "",
     general: Annotated[str, typer.Option(help="The primitive that it specialises.")] = "",
     verb: Annotated[str, typer.Option(help="The verb for it.")] = "",
-    out: Annotated[Path | None, typer.Option(help="The file to write; else it is printed.")] = None,
-    profile: Base = "extended",
+    output: OutputFile = None,
+    profile: ProfileName = "extended",
     rules: Rules = None,
     actionary: Place = None,
 ) -> None:
-    """Write a rule file for NAME from a segment or a feature set, ready to be edited."""
-    from capar.cli.output import check_writable, written
+    """Write a rule file from a segment or a feature set, to be edited."""
     from capar.model.errors import FileError, RuleError
     from capar.rulebook.drafts import rule_from_features, rule_from_segment
 
@@ -52,10 +116,10 @@ def new(
         raise RuleError(
             "say either --from CAPTURE/END_EFFECTOR/INDEX or --features START,END,CHANGE,FORCE"
         )
-    if out is not None and out.exists():
-        raise FileError(out, "exists already.", "Choose another file.")
-    if out is not None:
-        check_writable(out)
+    if output is not None:
+        if output.exists():
+            raise FileError(output, "exists already.", "Choose another file.")
+        check_writable(output)
     place = opened(actionary)
     base = rule_base(profile, rules, place)
     if source is not None:
@@ -63,264 +127,20 @@ def new(
         text = rule_from_segment(name, source, rules=base, actionary=kept, **words)
     else:
         text = rule_from_features(name, features or "", rules=base, **words)
-    if out is None:
-        typer.echo(text, nl=False)
-        return
-    with written(out) as draft:
-        draft.write_text(text, encoding="utf-8")
-    typer.echo(f"wrote {out}; edit it, then: capar rules check {out}", err=True)
-
-
-def list_words(
-    name: Annotated[str | None, typer.Argument(help="One word, such as carried_off.")] = None,
-    profile: Base = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
-    json: Json = False,
-) -> None:
-    """Explain the words of rules: what a rule file may read or state, and with which arguments.
-
-    With NAME also where it is defined, and by which rules.
-    """
-    from capar_rules.authoring.glossary import glossary
-
-    found = glossary(rule_base(profile, rules, opened(actionary)))
-    if json:
-        print_words_json(found, name)
-    elif name:
-        print_word(found, name)
-    else:
-        print_glossary(found)
-
-
-def print_changes(changes: "tuple[Renamed, ...]", others: tuple[str, ...] = ()) -> None:
-    """The segments that have another name now, and how many; who was left alone."""
-    from capar.model.observation import SegmentAddress
-    from capar.rulebook.changes import NOTHING
-
-    for change in changes:
-        before, after = (
-            f"{name} (or {', '.join(shared)})" if shared else name
-            for name, shared in (
-                (change.before, change.before_others), (change.after, change.after_others)
-            )
-        )  # fmt: skip
-        what = f"{before} -> {after}"
-        if NOTHING in (change.before, change.after):
-            what = f"{before} vanishes" if change.after == NOTHING else f"{after} appears"
-        address = SegmentAddress(change.ee, change.index, change.capture)
-        typer.echo(f"{address}  {change.start_s:.2f} to {change.end_s:.2f} s: {what}")
-    told = "1 segment changes" if len(changes) == 1 else f"{len(changes)} segments change"
-    typer.echo(told if changes else f"{told}: none that was observed gets another name")
-    for line in sorted({_settling(change) for change in changes if change.after_others}):
-        typer.echo(line)
-    print_others(others)
-
-
-def _settling(change: "Renamed") -> str:
-    """How several names that share a segment are ordered."""
-    old = {change.before, *change.before_others}
-    new, *rest = sorted((change.after, *change.after_others), key=lambda name: (name in old, name))
-    return (
-        f"{new} and {' and '.join(rest)} share a segment. To settle it, state "
-        f'precedes("{new}", "{rest[0]}"), or add the file with --over {rest[0]}; if {new} is a '
-        f"kind of {rest[0]}, with --kind-of {rest[0]}."
-    )
-
-
-def print_precedence(file: Path, over: Sequence[str]) -> None:
-    """What the primitives of a file precede, where that was asked for."""
-    from capar_rules.authoring.user_primitives import preceded
-
-    if over:
-        for name, others in preceded(file).items():
-            typer.echo(f"{name} precedes {', '.join(others) or 'nothing'}; {file} says so")
-
-
-def print_others(others: tuple[str, ...]) -> None:
-    """How many observations were left alone, as they were made with another profile."""
-    if others:
-        several = "s were" if len(others) > 1 else " was"
-        typer.echo(
-            f"{len(others)} observation{several} made with another profile: left alone", err=True
-        )
-
-
-def print_bearing(count: int, names: list[str]) -> None:
-    """How many stored segments bear a name that no rule gives any longer."""
-    if count:
-        told = "1 stored segment still bears" if count == 1 else f"{count} segments still bear"
-        typer.echo(
-            f"{told} the name {' or '.join(names)}; observing again renames them, as would "
-            "--reclassify have done",
-            err=True,
-        )
-
-
-def print_audit(found: "Audit") -> None:
-    """What an audit found, and whether the rules are clean."""
-    without = len(found.uncovered)
-    typer.echo(f"{found.possible} feature sets can be; {without} of them have no name:")
-    for line in _uncovered(found):
-        typer.echo(line)
-    for clash in found.ambiguous:
-        where = " ".join(part or "-" for part in clash.features[0])
-        typer.echo(f"ambiguous: {clash.first} and {clash.second}, first at {where}")
-    for name in found.shadowed:
-        typer.echo(f"shadowed: {name}")
-    for name in found.unreachable:
-        typer.echo(f"never fits in the worlds of the audit: {name} (`capar rules check` says why)")
-    for name in found.unchecked:
-        typer.echo(
-            f"not checked: {name}; its conditions are outside the worlds of the audit "
-            "(`capar rules check` lists them)"
-        )
-    typer.echo("the rules are clean" if found.clean else "the rules are not clean")
-
-
-def _uncovered(found: "Audit") -> Iterator[str]:
-    """Every feature set without a name, under its reason, a line for the relations at its ends.
-
-    What follows each is change of location and force.
-    """
-    reasons = dict(found.excused)
-    groups: dict[str, dict[str, list[str]]] = {}
-    for start, end, change, force in found.uncovered:
-        reason = reasons.get((start, end, change, force), "NO REASON IS GIVEN")
-        ends = f"{start or '-'} > {end or '-'}"
-        groups.setdefault(reason, {}).setdefault(ends, []).append(f"{change or '-'}/{force or '-'}")
-    for reason, cases in groups.items():
-        yield f"  {sum(map(len, cases.values()))}: {reason}"
-        for ends, rest in cases.items():
-            yield f"    {ends}  {' '.join(rest)}"
-
-
-def print_glossary(found: "Glossary") -> None:
-    """Every word, file by file, and what each file keeps to itself."""
-    within: dict[str, list[str]] = {}
-    for file, (name, arity) in found.internal:
-        within.setdefault(file, []).append(f"{name}/{arity}")
-    for file, words in groupby(found.words, key=lambda each: each.file):
-        typer.echo(file)
-        for word in words:
-            typer.echo(f"  {word}  {word.meaning}")
-        if file in within:
-            typer.echo(f"  within this file alone: {', '.join(within.pop(file))}")
-        typer.echo()
-    for file, names in within.items():
-        typer.echo(f"{file}\n  within this file alone: {', '.join(names)}\n")
-
-
-def print_word(found: "Glossary", name: str) -> None:
-    """One word: what it means, where it is explained, and the rules that define it."""
-    words = found.find(name)
-    for each in words:
-        typer.echo(f"{each}  {each.meaning}")
-        typer.echo(f"  explained in {each.file}:{each.line}" if each.line else f"  in {each.file}")
-    for signature in dict.fromkeys(word.signature for word in words):
-        if ways := found.needed(signature):
-            told = "; or ".join(", ".join(way) for way in ways)
-            typer.echo(f"  an example needs, beside frames, links and tags: {told}")
-        for place in found.rules_of(signature):
-            typer.echo(f"  defined at {place}\n{_rule(Path(place.file), place.line)}")
-
-
-def _rule(file: Path, line: int) -> str:
-    """The text of the rule that begins on that line."""
-    lines = file.read_text(encoding="utf-8").splitlines()[line - 1 :]
-    end = next((at for at, each in enumerate(lines, 1) if each.rstrip().endswith(".")), len(lines))
-    return "\n".join(f"    {each}" for each in lines[:end])
-
-
-def print_words_json(found: "Glossary", name: str | None) -> None:
-    """The same as JSON: one word, or all of them."""
-    words = found.find(name) if name else found.words
-    print_json([_row(word, found) for word in words])
-
-
-def _row(word: "Word", found: "Glossary") -> dict[str, object]:
-    return {
-        "name": word.name,
-        "arguments": list(word.arguments),
-        "meaning": word.meaning,
-        "file": word.file,
-        "line": word.line,
-        "needs": [list(way) for way in found.needed(word.signature)],
-        "defined": [str(each) for each in found.rules_of(word.signature)],
-    }
-
-
-rules = typer.Typer(no_args_is_help=True)
-
-File = Annotated[Path, typer.Argument(help="A rule file.")]
-Reclassify = Annotated[
-    bool, typer.Option("--reclassify", help="Rename the stored segments that this changes.")
-]
-Captures = Annotated[
-    list[Path] | None,
-    typer.Option(help="With --reclassify: a folder that holds captures; else this one."),
-]
-
-
-@rules.callback()
-def _root() -> None:
-    """Write primitives as rules: checked before they count, their effect shown before they do."""
-
-
-def _others(file: Path, rules: Path | None, actionary: str | None) -> tuple[Path, ...]:
-    """The rule files that people wrote, without this one."""
-    from capar_rules.authoring.user_rules import user_rules
-
-    files = user_rules(rules, actionary=opened(actionary))
-    return tuple(each for each in files if each.resolve() != file.resolve())
-
-
-@rules.command("list")
-def list_rules(
-    profile: Base = "extended", rules: Rules = None, actionary: Place = None, json: Json = False
-) -> None:
-    """List every primitive: where it comes from, what it specialises, and what it is.
-
-    Rules that ship are core, those in the Actionary's folder rules are user, and those in a folder
-    that --rules or CAPAR_RULES names, or else in ./rules, are project.
-    """
-    from dataclasses import asdict
-
-    from capar_rules.authoring.user_primitives import rules_of
-
-    place = opened(actionary)
-    found = rules_of(rule_base(profile, rules, place), actionary=place)
-    if json:
-        print_json([asdict(each) for each in found])
-        return
-    for entry in found:
-        general = f" < {', '.join(entry.general)}" if entry.general else ""
-        typer.echo(f"{entry.origin}  {entry.name}{general}: {entry.definition}")
-
-
-@rules.command()
-def show(
-    name: Annotated[str, typer.Argument(help="A primitive.")],
-    profile: Base = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
-) -> None:
-    """Print the rule file of a primitive."""
-    from capar_rules.authoring.user_primitives import rule_of
-
-    info = rule_of(rule_base(profile, rules, opened(actionary)), name)
-    typer.echo(Path(info.file).read_text(encoding="utf-8"), nl=False)
+    emit(text, output)
+    if output is not None:
+        typer.echo(f"wrote {output}; edit it, then: capar rules check {output}", err=True)
 
 
 @rules.command()
 def check(
     file: File,
-    profile: Base = "extended",
+    profile: ProfileName = "extended",
     rules: Rules = None,
     actionary: Place = None,
     json: Json = False,
 ) -> None:
-    """Say what is wrong with FILE, with line and column; nothing of it is run."""
+    """Say what is wrong with a rule file; nothing of it is run."""
     from capar_rules.lint.checking import check as checked
     from capar_rules.lint.findings import errors
 
@@ -338,9 +158,12 @@ def check(
 
 @rules.command()
 def test(
-    file: File, profile: Base = "extended", rules: Rules = None, actionary: Place = None
+    file: File,
+    profile: ProfileName = "extended",
+    rules: Rules = None,
+    actionary: Place = None,
 ) -> None:
-    """Run the examples that FILE carries: what it must match, and what it must not."""
+    """Run the examples in a rule file: what it must match, and must not."""
     from capar_rules.authoring.user_primitives import try_rule
     from capar_rules.lint.checking import admit, require
     from capar_rules.lint.checking import check as checked
@@ -374,45 +197,46 @@ def add(
     ] = None,
     reclassify: Reclassify = False,
     captures: Captures = None,
-    profile: Base = "extended",
+    profile: ProfileName = "extended",
     rules: Rules = None,
     actionary: Place = None,
 ) -> None:
-    """Take FILE among your rules, once it is checked, unambiguous, and its examples hold.
+    """Add a rule file to your rules.
 
-    It goes to the folder that --rules or CAPAR_RULES names, else to the folder rules of the
-    Actionary that --actionary or CAPAR_ACTIONARY names, else to ./rules.
+    It must be free of errors and ambiguities, and its examples must hold. It goes to the folder
+    that --rules or CAPAR_RULES names, else to the folder rules of the Actionary that --actionary or
+    CAPAR_ACTIONARY names, else to ./rules.
     """
     from capar.rulebook.changes import add_reclassifying
-    from capar_rules.authoring.user_primitives import add_rule
+    from capar_rules.authoring.user_primitives import add_rule, preceded
     from capar_rules.authoring.user_rules import actionary_rules, make_folder, new_rules_folder
 
-    place = opened(actionary)
     folder = new_rules_folder(rules, actionary=actionary)
     if reclassify or actionary:
         require_actionary(actionary, observed=reclassify)
     if rules:
         make_folder(folder)
-    rule_base(profile, rules, place)
+    rule_base(profile, rules, opened(actionary))
     if folder == actionary_rules():
         require_actionary(actionary)
     make_folder(folder)
     beside = _others(file, rules, actionary)
-    if not reclassify:
+    effect = None
+    if reclassify:
+        added, effect = add_reclassifying(
+            file, folder=folder, actionary=actionary, base=profile, over=over or (),
+            kind_of=kind_of or (), beside=beside, captures=captures or [Path()],
+        )  # fmt: skip
+    else:
         added = add_rule(
             file, folder=folder, base=profile, over=over or (), kind_of=kind_of or (),
             beside=beside,
         )  # fmt: skip
-        typer.echo(f"added {added}")
-        print_precedence(added, over or ())
-        return
-    added, effect = add_reclassifying(
-        file, folder=folder, actionary=actionary, base=profile, over=over or (),
-        kind_of=kind_of or (), beside=beside, captures=captures or [Path()],
-    )  # fmt: skip
     typer.echo(f"added {added}")
-    print_precedence(added, over or ())
-    print_changes(effect.changes, effect.others)
+    for name, others in preceded(added).items() if over else ():
+        typer.echo(f"{name} precedes {', '.join(others) or 'nothing'}; {added} says so")
+    if effect:
+        _print_changes(effect.changes, effect.others)
 
 
 @rules.command()
@@ -420,14 +244,14 @@ def remove(
     name: Annotated[str, typer.Argument(help="A primitive of yours.")],
     reclassify: Reclassify = False,
     captures: Captures = None,
-    profile: Base = "extended",
+    profile: ProfileName = "extended",
     rules: Rules = None,
     actionary: Place = None,
 ) -> None:
-    """Take a primitive out of your rules: first your project's, then those of the Actionary.
+    """Remove a primitive from your rules.
 
-    With --rules alone or --actionary alone, only that folder is looked through. A rule on which
-    another one rests stays.
+    Your project's are searched first, then those of the Actionary; with --rules alone or
+    --actionary alone, only that folder. A rule on which another one rests stays.
     """
     from capar.rulebook.changes import bearing, remove_reclassifying
     from capar_rules.authoring.user_primitives import introduced, removable
@@ -441,20 +265,25 @@ def remove(
     every = user_rules(rules, actionary=place)
     path = removable(name, files=(*project, *beside), every=every)
     names = introduced(path)
-    if not reclassify:
-        path.unlink()
+    if reclassify:
+        require_actionary(actionary, observed=True)
+        others = tuple(each for each in every if each.resolve() != path.resolve())
+        effect = remove_reclassifying(
+            path, actionary=actionary, after=admitted_profile(profile, added=others),
+            captures=captures or [Path()],
+        )  # fmt: skip
         typer.echo(f"removed {path}")
-        if has_actionary(place, named=actionary):
-            print_bearing(bearing(actionary, names), names)
+        _print_changes(effect.changes, effect.others)
         return
-    require_actionary(actionary, observed=True)
-    others = tuple(each for each in every if each.resolve() != path.resolve())
-    effect = remove_reclassifying(
-        path, actionary=actionary, after=admitted_profile(profile, added=others),
-        captures=captures or [Path()],
-    )  # fmt: skip
+    path.unlink()
     typer.echo(f"removed {path}")
-    print_changes(effect.changes, effect.others)
+    count = bearing(actionary, names) if has_actionary(place, named=actionary) else 0
+    if count:
+        typer.echo(
+            f"stored segments that still bear the name {' or '.join(names)}: {count}; observe "
+            "again, or remove with --reclassify, to rename them",
+            err=True,
+        )
 
 
 @rules.command()
@@ -464,17 +293,15 @@ def diff(
         list[str] | None,
         typer.Option(help="A capture to compare on, instead of the Actionary; may be repeated."),
     ] = None,
-    profile: Base = "extended",
+    profile: ProfileName = "extended",
     rules: Rules = None,
     actionary: Place = None,
     json: Json = False,
 ) -> None:
-    """Show which segments, of which captures, would change their name if FILE were added.
+    """Show which segments would change their name if a file were added.
 
     Of an Actionary, those observations are compared that were made with the same profile.
     """
-    from dataclasses import asdict
-
     from capar.rulebook.changes import captured, renamed, stored
     from capar_rules.lint.checking import admitted_profile, require
     from capar_rules.lint.checking import check as checked
@@ -493,28 +320,161 @@ def diff(
     changes = renamed(seen, before=before, after=after)
     if json:
         print_json([asdict(each) for each in changes])
-        print_others(others)
-    else:
-        print_changes(changes, others)
+    _print_changes(() if json else changes, others, counted=not json)
 
 
 @rules.command()
 def audit(
-    profile: Base = "extended", rules: Rules = None, actionary: Place = None, json: Json = False
+    profile: ProfileName = "extended",
+    rules: Rules = None,
+    actionary: Place = None,
+    json: Json = False,
 ) -> None:
-    """Audit the whole rule base over every segment that there can be."""
-    from dataclasses import asdict
-
+    """Audit the whole rule base over every possible segment."""
     from capar_rules.lint.world_checks import audit as audited
 
     found = audited(rule_base(profile, rules, opened(actionary)))
     if json:
         print_json({**asdict(found), "clean": found.clean})
     else:
-        print_audit(found)
+        _print_audit(found)
     if not found.clean:
         raise typer.Exit(1)
 
 
-rules.command("new")(new)
-rules.command("words")(list_words)
+@rules.command("words")
+def list_words(
+    name: Annotated[str | None, typer.Argument(help="One word, such as carried_off.")] = None,
+    profile: ProfileName = "extended",
+    rules: Rules = None,
+    actionary: Place = None,
+    json: Json = False,
+) -> None:
+    """Explain the words of rules: what a rule file may read or state.
+
+    Each is written with its arguments; with NAME also where it is defined, and by which rules.
+    """
+    from capar_rules.authoring.glossary import glossary
+
+    found = glossary(rule_base(profile, rules, opened(actionary)))
+    if json:
+        rows = [
+            {
+                "name": word.name,
+                "arguments": list(word.arguments),
+                "meaning": word.meaning,
+                "file": word.file,
+                "line": word.line,
+                "needs": [list(way) for way in found.needed(word.signature)],
+                "defined": [str(each) for each in found.rules_of(word.signature)],
+            }
+            for word in (found.find(name) if name else found.words)
+        ]
+        print_json(rows)
+    elif name:
+        _print_word(found, name)
+    else:
+        _print_glossary(found)
+
+
+def _print_changes(
+    changes: "tuple[Renamed, ...]", others: Sequence[str], *, counted: bool = True
+) -> None:
+    """The segments that have another name now, and how many; what was left alone."""
+    from capar.model.observation import SegmentAddress
+    from capar.rulebook.changes import NOTHING
+
+    shared: set[str] = set()
+    for change in changes:
+        before, after = (
+            f"{name} (or {', '.join(rest)})" if rest else name
+            for name, rest in (
+                (change.before, change.before_others),
+                (change.after, change.after_others),
+            )
+        )
+        what = f"{before} -> {after}"
+        if NOTHING in (change.before, change.after):
+            what = f"{before} vanishes" if change.after == NOTHING else f"{after} appears"
+        address = SegmentAddress(change.ee, change.index, change.capture)
+        typer.echo(f"{address}  {change.start_s:.2f} to {change.end_s:.2f} s: {what}")
+        if change.after_others:
+            old = {change.before, *change.before_others}
+            names = (change.after, *change.after_others)
+            added, *rest = sorted(names, key=lambda name: (name in old, name))
+            shared.add(
+                f"{added} and {' and '.join(rest)} share a segment. To settle it, state "
+                f'precedes("{added}", "{rest[0]}"), or add the file with --over {rest[0]}; if '
+                f"{added} is a kind of {rest[0]}, with --kind-of {rest[0]}."
+            )
+    if counted:
+        typer.echo(f"segments that change: {len(changes)}")
+    for line in sorted(shared):
+        typer.echo(line)
+    if others:
+        typer.echo(f"observations made with another profile, left alone: {len(others)}", err=True)
+
+
+def _print_audit(found: "Audit") -> None:
+    """What an audit found, and whether the rules are clean.
+
+    Every feature set without a name is listed under its reason, a line for the relations at its
+    ends; what follows each is change of location and force.
+    """
+    typer.echo(f"{found.possible} feature sets can be; {len(found.uncovered)} have no name:")
+    reasons = dict(found.excused)
+    groups: dict[str, dict[str, list[str]]] = {}
+    for start, end, change, force in found.uncovered:
+        reason = reasons.get((start, end, change, force), "NO REASON IS GIVEN")
+        ends = f"{start or '-'} > {end or '-'}"
+        groups.setdefault(reason, {}).setdefault(ends, []).append(f"{change or '-'}/{force or '-'}")
+    for reason, cases in groups.items():
+        typer.echo(f"  {sum(map(len, cases.values()))}: {reason}")
+        for ends, rest in cases.items():
+            typer.echo(f"    {ends}  {' '.join(rest)}")
+    for clash in found.ambiguous:
+        where = " ".join(part or "-" for part in clash.features[0])
+        typer.echo(f"ambiguous: {clash.first} and {clash.second}, first at {where}")
+    for name in found.shadowed:
+        typer.echo(f"shadowed: {name}")
+    for name in found.unreachable:
+        typer.echo(f"never fits in the worlds of the audit: {name} (`capar rules check` says why)")
+    for name in found.unchecked:
+        typer.echo(
+            f"not checked: {name}; its conditions are outside the worlds of the audit "
+            "(`capar rules check` lists them)"
+        )
+    typer.echo("the rules are clean" if found.clean else "the rules are not clean")
+
+
+def _print_glossary(found: "Glossary") -> None:
+    """Every word, file by file, and what each file keeps to itself."""
+    within: dict[str, list[str]] = {}
+    for file, (name, arity) in found.internal:
+        within.setdefault(file, []).append(f"{name}/{arity}")
+    for file, words in groupby(found.words, key=lambda each: each.file):
+        typer.echo(file)
+        for word in words:
+            typer.echo(f"  {word}  {word.meaning}")
+        if file in within:
+            typer.echo(f"  within this file alone: {', '.join(within.pop(file))}")
+        typer.echo()
+    for file, names in within.items():
+        typer.echo(f"{file}\n  within this file alone: {', '.join(names)}\n")
+
+
+def _print_word(found: "Glossary", name: str) -> None:
+    """One word: what it means, where it is explained, and the rules that define it."""
+    words = found.find(name)
+    for each in words:
+        typer.echo(f"{each}  {each.meaning}")
+        typer.echo(f"  explained in {each.file}:{each.line}" if each.line else f"  in {each.file}")
+    for signature in dict.fromkeys(word.signature for word in words):
+        if ways := found.needed(signature):
+            told = "; or ".join(", ".join(way) for way in ways)
+            typer.echo(f"  an example needs, beside frames, links and tags: {told}")
+        for place in found.rules_of(signature):
+            lines = Path(place.file).read_text(encoding="utf-8").splitlines()[place.line - 1 :]
+            ends = (at for at, each in enumerate(lines, 1) if each.rstrip().endswith("."))
+            text = "\n".join(f"    {each}" for each in lines[: next(ends, len(lines))])
+            typer.echo(f"  defined at {place}\n{text}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from capar.cli.options import New, Place, Wait, confirm_new, opened, require_actionary
+from capar.cli.options import Json, New, Place, Wait, confirm_new, opened, require_actionary
 
 if TYPE_CHECKING:
     from capar.export.plans import PlanSource
@@ -23,8 +23,9 @@ def import_(
     new: New = False,
     actionary: Place = None,
 ) -> None:
-    """Take in Turtle, TriG, N-Quads or JSON-LD, all of it or none, checked by the shapes.
+    """Import Turtle, TriG, N-Quads or JSON-LD.
 
+    All of it or none is taken, checked by the shapes.
     An observation in FILE replaces the one of its name.
     """
     from kb import Actionary
@@ -84,7 +85,7 @@ def export(
     ] = False,
     actionary: Place = None,
 ) -> None:
-    """Write everything, or one observation, as Turtle, TriG, N-Quads, JSON-LD or RDF/XML.
+    """Export the Actionary or an observation as RDF, or a plan.
 
     With --format pddl, bt or bml: the action of CAPTURE or OBSERVATION as a plan for others.
     """
@@ -186,11 +187,12 @@ def backup(
         Path | None,
         typer.Argument(help="Where to, as N-Quads; else beside the Actionary, by date and time."),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Json = False,
     actionary: Place = None,
 ) -> None:
-    """Write all that the Actionary holds to FILE, and its rules beside it; both are read again.
+    """Write all that the Actionary holds to a file, and its rules.
 
+    The rules are written beside it.
     `capar import FILE --actionary FOLDER` makes it again, in a folder that is not there yet.
     """
     from capar.cli.output import print_json
