@@ -235,7 +235,15 @@ def stored(name: str, /, **parts: str) -> str:
 
 @cache
 def _stored(name: str) -> str:
-    return complete((files("kb") / "store" / "queries" / f"{name}.rq").read_text("utf-8"))
+    """The text of a file with its IRIs in full: updates are joined, where prefixes may not be."""
+    text = (files("kb") / "store" / "queries" / f"{name}.rq").read_text("utf-8")
+    return "".join(_in_full(piece) for piece in tokens(text))
+
+
+def _in_full(piece: Token) -> str:
+    prefix, _, local = piece.text.partition(":")
+    known = piece.kind == "name" and prefix in PREFIXES
+    return f"<{PREFIXES[prefix]}{local}>" if known else _whole(piece)
 
 
 def fill(template: str, **parts: str) -> str:

@@ -1,4 +1,4 @@
-"""Facts come back as they were measured, and refer to the bodies that they are about."""
+"""Facts come back as they were measured, and contacts and forces say more of objects."""
 
 from dataclasses import replace
 
@@ -19,17 +19,20 @@ from capar.model.facts import (
     Gap,
     LookingAt,
     MovedBy,
+    Moving,
     OfAgent,
     Place,
     RateMhz,
     Touching,
 )
-from capar.model.observation import Observation
+from capar.model.observation import ForceStyle, Observation
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
+from kb.checks import check
 from kb.encode import encode
-from kb.encode.facts import in_order, stored_facts
+from kb.encode.facts import held_contacts, in_order, overlap_s, stored_facts
 from kb.store.validation import by_thing, violations
+from ontology import CAPAR
 
 MADE = (drink_from_mug(), pick_up_with_both_hands(), with_unknown())
 
@@ -144,3 +147,82 @@ def test_what_is_stored_of_a_trial_is_at_most_half_of_what_schema_2_stored(
     ]
     assert len(now) < 0.5 * fact_statements
     assert violations(by_thing(encode(drunk).quads)) == ()
+
+
+times = st.lists(st.integers(0, 200), min_size=2, max_size=12, unique=True).map(sorted)
+
+
+@given(times, st.tuples(st.integers(0, 200), st.integers(0, 200)).map(sorted))
+def test_the_time_shared_with_others_is_what_lies_in_both(ends: list[int], of: list[int]) -> None:
+    spans = list(zip(ends[::2], ends[1::2], strict=False))
+    counted = sum(any(a <= at < b for a, b in spans) for at in range(of[0], of[1]))
+    assert overlap_s((of[0], of[1]), spans) == counted
+
+
+def test_only_contacts_of_end_effectors_tell_how_long_the_thing_is_held() -> None:
+    for seen in (drink_from_mug(), pick_up_with_both_hands()):
+        effectors = {link.ee for link in seen.links}
+        contacts = [each for each in seen.facts if isinstance(each, Touching)]
+        told = held_contacts(seen, 100.0)
+        assert set(told) == {each for each in contacts if each.body in effectors}
+        for contact, of in told.items():
+            lasts = (contact.last - contact.first) / 100.0
+            assert 0.0 <= float(str(of[CAPAR.heldFor])) <= lasts + 1e-9
+            moves = any(
+                isinstance(each, Moving)
+                and each.object == contact.other
+                and each.first < contact.last
+                and contact.first < each.last
+                for each in seen.facts
+            )
+            assert (float(str(of[CAPAR.movedFor])) > 0.0) == moves
+
+
+def test_what_is_held_is_told_by_contact_and_in_all() -> None:
+    actionary = Actionary.in_memory()
+    actionary.add(drink_from_mug())
+    (row,) = actionary.ask("held")
+    query = "SELECT (SUM(?held) AS ?all) { ?contact capar:heldFor ?held }"
+    ((held,),) = (each.values() for each in actionary.query(query).plain())
+    assert row["ee"] == "right_hand"
+    assert 0.0 < float(str(row["held"])) == float(str(held)) <= float(str(row["touched"]))
+
+
+FORCE = ForceStyle(
+    object="mug",
+    ee="right_hand",
+    start_s=1.6,
+    end_s=2.5,
+    struck=True,
+    position_m=(0.4, 0.0, 0.8),
+    velocity_mps=(0.0, 1.2, 0.0),
+    striker_mps=(0.0, 1.25, 0.0),
+    follow_mps=(0.0, 0.575, 0.0),
+    restitution=0.5,
+    damping_per_s=(3.0, 2.5),
+    thesis_damping=(0.1, 0.25),
+    bounce=None,
+    impulse_ns=None,
+    residual_m=0.001,
+)
+
+
+def test_damping_and_restitution_are_shown_with_the_kind_of_thing(actionary: Actionary) -> None:
+    actionary.add(replace(drink_from_mug(), profile="extended", forces=(FORCE,)))
+    shown = actionary.object_profile("mug")
+    assert shown["state: damping"] == ("3.0 2.5 0.0",)
+    assert shown["state: restitution"] == ("0.5",)
+    assert check(actionary.store, full=True) == ()
+
+
+def test_the_thesis_profile_keeps_the_thesis_damping(actionary: Actionary) -> None:
+    actionary.add(replace(drink_from_mug(), profile="thesis", forces=(FORCE,)))
+    assert actionary.object_profile("mug")["state: damping"] == ("0.1 0.25 0.0",)
+
+
+def test_what_was_let_go_keeps_how_it_bounces(actionary: Actionary) -> None:
+    tossed = replace(FORCE, struck=False, restitution=None, bounce=0.3, damping_per_s=None)
+    actionary.add(replace(drink_from_mug(), profile="extended", forces=(tossed,)))
+    shown = actionary.object_profile("mug")
+    assert shown["state: restitution"] == ("0.3",)
+    assert shown["state: damping"] == ()

@@ -88,9 +88,3 @@ def test_each_primitive_has_a_rule_with_its_text_and_its_thresholds() -> None:
     stated = {each.name: each.value for each in lift.thresholds}
     assert stated["height_mm"] == 50 and "rest_ms" not in stated
     assert "aside_mm" in {each.name for each in carry.thresholds}
-
-
-def test_the_thesis_profile_has_its_seven_rules() -> None:
-    seven = ["Reach", "Hit", "Touch", "TouchWith", "MoveObj", "MoveObjTo", "ResumePosture"]
-    found = naming_rules(profile("thesis"), [*seven, "Lift"])
-    assert [each.name for each in found] == sorted(seven)

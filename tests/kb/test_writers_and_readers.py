@@ -7,6 +7,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import kill
 import pytest
 from observations import drink_from_mug
 
@@ -99,3 +100,10 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
 def test_a_server_that_does_not_answer_is_named() -> None:
     with pytest.raises(StoreError, match=r"http://127\.0\.0\.1:9/query.*no server answers"):
         Actionary.open("http://127.0.0.1:9")
+
+
+def test_ten_kills_lose_nothing_and_tear_nothing(tmp_path: Path) -> None:
+    outcome = kill.run(10, seed=1, folder=tmp_path)
+    assert outcome.problems == ()
+    assert outcome.kills == 10
+    assert outcome.acknowledged > 0

@@ -11,7 +11,6 @@ from capar.model.errors import UnknownNameError
 from capar.model.facts import Intended
 from capar.model.par import FeatureSet
 from kb.actionary import Actionary
-from kb.lexicon.verbs import Seen, often, summed
 
 RUNNER = CliRunner()
 STILL = FeatureSet("0", "0", "0", "hand", "0")
@@ -58,30 +57,10 @@ def test_what_was_seen_of_a_primitive_is_summed_over_its_purposes(book: str) -> 
     assert "  Toast: Lift, 3 times\n" in run("verb", "move", "--kinds", "--actionary", book)
 
 
-def test_seen_sums_are_by_primitive_and_observation() -> None:
-    seen = (
-        *(Seen("Carry", "a", 1), Seen("Carry", "b", 2), Seen("Lift", "a", 5)),
-        Seen("Carry", "a", 1, "Show"),
-    )
-    assert [(each.primitive, each.observation, each.count) for each in summed(seen)] == [
-        ("Carry", "a", 2),
-        ("Carry", "b", 2),
-        ("Lift", "a", 5),
-    ]
-
-
-def test_how_often_is_said_in_english() -> None:
-    assert [often(each) for each in (1, 2, 3, 32)] == ["once", "twice", "3 times", "32 times"]
-
-
 def test_a_verb_of_which_only_the_more_general_was_seen_was_not_seen(book: str) -> None:
     told = run("verb", "slap", "--actionary", book)
     assert "slap: not represented; only what is more general is: HitAway" in told
     assert not seen_lines(told)
-
-
-def test_nothing_is_said_of_what_was_seen_where_nothing_was() -> None:
-    assert "seen" not in run("verb", "slap").lower()
 
 
 @pytest.mark.parametrize("more", [(), ("--kinds",)])
@@ -93,11 +72,6 @@ def test_an_unknown_verb_is_told_with_the_nearest(more: tuple[str, ...]) -> None
         assert message.startswith(f"no verb {verb!r} is known; the nearest ")
         assert near in message
         assert "none" not in message
-
-
-def test_an_unknown_verb_near_none_says_so() -> None:
-    result = RUNNER.invoke(app, ["verb", "zzz"])
-    assert str(result.exception) == "no verb 'zzz' is known, nor one near it."
 
 
 def test_what_a_rule_file_states_wrongly_is_told_beside_the_answer(tmp_path: Path) -> None:
