@@ -33,8 +33,8 @@ from capar.regeneration.quality import (
     TOUCHES_M,
     Asserted,
     Contact,
-    Measuring,
     Quality,
+    contact_distances,
     contact_gate,
     contacts_of,
     failures,
@@ -823,7 +823,8 @@ def _planned(stage: Stage, source: Source, names: dict[str, str]) -> Asserted:
 
 
 def _touching(motion: Motion, names: dict[str, str]) -> Touching:
-    near = Measuring(motion).distances(len(motion.postures) - 1)
+    around = Surroundings(motion.plan.human, motion.plan.scene)
+    near = contact_distances(around, motion, len(motion.postures) - 1)
     return frozenset(
         (side, names[thing])
         for (side, thing), apart_m in near.items()

@@ -125,21 +125,13 @@ def flights(
 
 
 def flight_notes(source: Source, found: list[Flight]) -> list[str]:
-    """What is told of things that were set going."""
-    out = []
-    for flight in found:
-        launch, force = flight.launch, flight.launch.force
-        verb = "strikes" if force.struck else "lets go of"
-        old = np.linalg.norm(force.velocity_mps)
-        end = ", ".join(f"{value:.2f}" for value in flight.motion.positions[-1])
-        course = ", ".join(phase.value for _, phase in flight.motion.phases)
-        out.append(
-            f"the {launch.side} hand {verb} {launch.thing!r} at "
-            f"{source.times[launch.frame]:.2f} s with {flight.hand_mps:.2f} m/s; it goes "
-            f"{np.linalg.norm(flight.velocity):.2f} m/s (recorded {old:.2f}), {course}, and is at "
-            f"({end}) m at the end"
-        )
-    return out
+    """The speed of each object that was set going, and the phases of its motion."""
+    return [
+        f"{flight.launch.thing!r} is set going at {source.times[flight.launch.frame]:.2f} s with "
+        f"{np.linalg.norm(flight.velocity):.2f} m/s by the {flight.launch.side} hand at "
+        f"{flight.hand_mps:.2f} m/s: {', '.join(phase.value for _, phase in flight.motion.phases)}"
+        for flight in found
+    ]
 
 
 def arm_mass(human: Human, side: str) -> float:
@@ -329,27 +321,6 @@ def with_tosses(source: Source, scene: Scene, name: str, path: RigidTransform) -
     return RigidTransform.from_components(spots - rotation.apply(local), rotation)
 
 
-def toss_notes(source: Source, scene: Scene, path: RigidTransform, name: str) -> list[str]:
-    """What is told of the flights of a thing."""
-    out = []
-    for toss in source.tosses:
-        if toss.thing == name:
-            start, old = (
-                _velocities(source.times[part], *ends)[0]
-                for part, ends in (
-                    (slice(toss.first, toss.last + 1), _ends(way, at, toss))
-                    for way, at in ((path, scene), (source.paths[name], source.scene))
-                )
-            )
-            new_mps, old_mps = np.linalg.norm(start), np.linalg.norm(old)
-            out.append(
-                f"the {toss.side} hand throws {name!r} at {source.times[toss.first]:.2f} s with "
-                f"{new_mps:.2f} m/s (recorded {old_mps:.2f}); it flies by gravity and is caught "
-                f"by the {toss.catcher} hand at {source.times[toss.last]:.2f} s"
-            )
-    return out
-
-
 def flight_faults(
     times: Float[np.ndarray, "frames"], spots: Float[np.ndarray, "frames 3"]
 ) -> FlightFaults:
@@ -425,14 +396,6 @@ def _swings(source: Source, toss: Toss) -> tuple[int, int]:
         if hold.first == toss.last:
             last = min(last, hold.last)
     return min(first, toss.first - 2), max(last, toss.last + 2)
-
-
-def _ends(
-    path: RigidTransform, scene: Scene, toss: Toss
-) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
-    """Where a thing's middle is let go and caught [m]."""
-    middle = _middle(scene, toss.thing)
-    return np.asarray(path[toss.first].apply(middle)), np.asarray(path[toss.last].apply(middle))
 
 
 def _middle(scene: Scene, name: str) -> Float[np.ndarray, "3"]:

@@ -187,15 +187,6 @@ def _ratio(source: Source, scene: Scene, name: str) -> Float[np.ndarray, "3"]:
     return np.asarray(new / np.maximum(old, 1e-9))
 
 
-def told_of_constraints(constraints: Mapping[str, Constraint]) -> list[str]:
-    """What is told of the lines that things are kept on."""
-    return [
-        f"{name!r} keeps to its {constraint.kind} on {constraint.other!r}"
-        for name, constraint in constraints.items()
-        if constraint.kind != PLANE
-    ]
-
-
 STILL_M, STILL_RAD = 0.005, float(np.radians(5.0))
 """A stretch in which a thing stays so near where it was is one of rest [m, rad]."""
 

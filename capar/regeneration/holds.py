@@ -167,23 +167,6 @@ def _within(span: Hold | Displaced, contact: Touching) -> bool:
     return contact.first <= span.first and span.last <= contact.last
 
 
-def wanderings(
-    hands: Hands, paths: Mapping[str, RigidTransform], holds: tuple[Hold, ...]
-) -> list[str]:
-    """What is told of holds that are not rigid: performed again, they are."""
-    out = []
-    for hold in holds:
-        part = slice(hold.first, hold.last + 1)
-        off, turned = _apart(paths[hold.thing][part].inv() * hands[hold.side][1][part])
-        if off.max() > LOOSER[-1] * SETTLED_M or turned.max() > LOOSER[-1] * SETTLED_RAD:
-            out.append(
-                f"the recorded {hold.side} hand wanders by up to {1e3 * off.max():.0f} mm and "
-                f"{np.degrees(turned.max()):.0f} degrees on {hold.thing!r} while it holds it; "
-                "performed, it stays where it was in the median"
-            )
-    return out
-
-
 def meetings_of(
     capture: Capture,
     eyes: RigidTransform,
@@ -250,16 +233,6 @@ def _carried(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | N
         return None
     near = (off < SLID * GRASP_M) & (turned < SLID * GRASP_RAD)
     return next((int(b), int(e)) for b, e in runs(near) if b <= first and last <= e)
-
-
-def wandering(thing: RigidTransform, hand: RigidTransform) -> tuple[float, float]:
-    """How far a hand wanders on a thing while that is under way, at worst [m, rad]."""
-    under_way = np.flatnonzero(_under_way(thing))
-    if len(under_way) < 2:
-        return 0.0, 0.0
-    part = slice(int(under_way[0]), int(under_way[-1]) + 1)
-    off, turned = _apart(thing[part].inv() * hand[part])
-    return float(off.max()), float(turned.max())
 
 
 def _under_way(thing: RigidTransform) -> Bool[np.ndarray, "frames"]:
@@ -385,17 +358,12 @@ def _flies(toss: Toss, times: Float[np.ndarray, "frames"], path: RigidTransform)
 
 def with_blows(holds: tuple[Hold, ...], launches: tuple[Launch, ...]) -> tuple[Hold, ...]:
     """The holds, and a momentary one for each blow: hand and thing meet in that frame alone."""
-    blows = [
-        Hold(launch.side, launch.thing, launch.frame, launch.frame)
-        for launch in launches
-        if launch.force.struck
-    ]
+    blows = [Hold(one.side, one.thing, *[one.frame] * 2) for one in launches if one.force.struck]
     kept = [
         hold
         for hold in holds
         if not any(
-            blow.side == hold.side
-            and blow.thing == hold.thing
+            (blow.side, blow.thing) == (hold.side, hold.thing)
             and hold.first - 1 <= blow.first <= hold.last + 1
             for blow in blows
         )
@@ -461,8 +429,6 @@ RESTS_M = 0.006
 FRICTION = 0.3
 """Coefficient of friction between what bears and what is borne: ceramics on wood or plastic have
 0.3 to 0.5 [1]."""
-
-GRAVITY_MPS2_BEARING = 9.81
 
 HALF_S = 0.1
 """Over so long before and after a frame its acceleration is measured [s]."""
@@ -535,25 +501,28 @@ def _next_ride(
                 continue
             (thing,) = pair - {bearer}
             for start, end in spans:
-                first, last = max(start, contact.first), min(end, contact.last)
-                held = [h for h in holds if h.thing == thing and h.first < last and first < h.last]
-                new = last > first and not held and (thing, first) not in have
-                if new and _goes_along(paths[thing], paths[bearer], first, last):
-                    return Ride(thing, bearer, first, last)
+                ride = Ride(thing, bearer, max(start, contact.first), min(end, contact.last))
+                first, last = ride.first, ride.last
+                held = any(h.thing == thing and h.first < last and first < h.last for h in holds)
+                heights = [paths[name].translation[first, 2] for name in (thing, bearer)]
+                new = not held and (thing, first) not in have and heights[0] >= heights[1]
+                if new and _goes_along(ride, paths):
+                    return ride
     return None
 
 
-def _goes_along(thing: RigidTransform, bearer: RigidTransform, first: int, last: int) -> bool:
-    """Whether a thing is carried along and rigidly together with what bears it."""
-    part = slice(first, last + 1)
-    gone = np.linalg.norm(thing[part].translation - thing[first].translation, axis=1)
-    above = thing[first].translation[2] >= bearer[first].translation[2]
-    relative = bearer[part].inv() * thing[part]
-    off = np.linalg.norm(relative.translation - relative[0].translation, axis=1)
-    turned = (relative.rotation * relative[0].rotation.inv()).magnitude()
-    limit_m, limit_rad = LOOSER[-1] * SETTLED_M, LOOSER[-1] * SETTLED_RAD
-    steady = off.max() < limit_m and turned.max() < limit_rad
-    return bool(above and steady and gone.max() >= MOVES_M)
+def _goes_along(ride: Ride, paths: Mapping[str, RigidTransform]) -> bool:
+    """Whether two things are moved and rigidly together meanwhile."""
+    if ride.last <= ride.first:
+        return False
+    part = slice(ride.first, ride.last + 1)
+    thing, lead = paths[ride.thing][part], paths[ride.bearer][part]
+    gone = np.linalg.norm(thing.translation - thing.translation[0], axis=1)
+    relative = lead.inv() * thing
+    off = np.linalg.norm(relative.translation - relative.translation[0], axis=1)
+    turned = (relative.rotation * relative.rotation[0].inv()).magnitude()
+    steady = off.max() < LOOSER[-1] * SETTLED_M and turned.max() < LOOSER[-1] * SETTLED_RAD
+    return bool(steady and gone.max() >= MOVES_M)
 
 
 def with_riders(
@@ -603,7 +572,7 @@ def _pull(
     padded = np.pad(spots, ((half, half), (0, 0)), mode="edge")
     ahead, back = padded[2 * half :], padded[: -2 * half]
     speeding = (ahead - 2.0 * spots + back) / (half / rate_hz) ** 2
-    return np.asarray(np.array([0.0, 0.0, -GRAVITY_MPS2_BEARING]) - speeding)
+    return np.asarray(np.array([0.0, 0.0, -GRAVITY_MPS2]) - speeding)
 
 
 def _inside(
@@ -650,25 +619,11 @@ def companions_of(
             same = lead.side == hold.side and lead.thing != hold.thing and lead not in known
             if same and before < (hold.first, hold.first - hold.last, hold.thing):
                 found = Companion(hold, lead)
-                if _goes_along_companions(found.ride, paths):
+                if _goes_along(found.ride, paths):
                     _check_together(found, paths)
                     out.append(found)
                     break
     return tuple(out)
-
-
-def _goes_along_companions(ride: Ride, paths: Mapping[str, RigidTransform]) -> bool:
-    """Whether two things are moved and rigidly together meanwhile."""
-    if ride.last <= ride.first:
-        return False
-    part = slice(ride.first, ride.last + 1)
-    thing, lead = paths[ride.thing][part], paths[ride.bearer][part]
-    gone = np.linalg.norm(thing.translation - thing.translation[0], axis=1)
-    relative = lead.inv() * thing
-    off = np.linalg.norm(relative.translation - relative.translation[0], axis=1)
-    turned = (relative.rotation * relative.rotation[0].inv()).magnitude()
-    steady = off.max() < LOOSER[-1] * SETTLED_M and turned.max() < LOOSER[-1] * SETTLED_RAD
-    return bool(steady and gone.max() >= MOVES_M)
 
 
 def _check_together(found: Companion, paths: Mapping[str, RigidTransform]) -> None:
@@ -679,10 +634,9 @@ def _check_together(found: Companion, paths: Mapping[str, RigidTransform]) -> No
             gone = np.linalg.norm(path[first : last + 1] - path[first], axis=1).max(initial=0.0)
             if gone >= MOVES_M:
                 raise PlanError(
-                    f"the {hold.side} hand moves {found.hold.thing!r} and {found.lead.thing!r} "
-                    f"together, and {hold.thing!r} by {1e3 * gone:.0f} mm without the other; one "
-                    "after the other is not regenerated. A part of the recording in which both "
-                    "are moved would do: from_s and to_s with --assume FILE"
+                    f"the {hold.side} hand moves {hold.thing!r} by {1e3 * gone:.0f} mm without the "
+                    f"other of {found.hold.thing!r} and {found.lead.thing!r}, and both together; "
+                    "a part in which both are moved would do: from_s and to_s with --assume FILE"
                 )
 
 

@@ -14,7 +14,7 @@ from capar.body.recording import HAND_SEGMENTS
 from capar.model.capture import TagType
 from capar.regeneration.body_frames import BodyFrames, free_pose, rest_pose
 from capar.regeneration.collisions import Surroundings
-from capar.regeneration.forces import toss_notes, with_tosses
+from capar.regeneration.forces import with_tosses
 from capar.regeneration.goals import (
     HINGE,
     PLANE,
@@ -25,7 +25,6 @@ from capar.regeneration.goals import (
     handled,
     rests,
     scene_constraints,
-    told_of_constraints,
     toss_of,
 )
 from capar.regeneration.holds import Ride, Steadiness, hand_spans, steadiness, with_riders
@@ -203,7 +202,11 @@ def thing_paths(
     still = {name: thing.pose for name, thing in scene.things.items()}
     out, constraints = {}, scene_constraints(source, scene)
     beside = {companion.hold.thing: companion for companion in source.companions}
-    told = told_of_constraints(constraints)
+    told = [
+        f"{name!r} keeps to its {one.kind} on {one.other!r}"
+        for name, one in constraints.items()
+        if one.kind != PLANE
+    ]
     for name, recorded in source.paths.items():
         kind = constraints[name].kind if name in constraints else ""
         if kind in {HINGE, RAIL}:
@@ -231,18 +234,12 @@ def thing_paths(
                         told.append(_lifted(name, source.times[start.frame], detour))
             poses[goal.frame :] = [goal.pose] * (count - goal.frame)
         out[name] = with_tosses(source, scene, name, RigidTransform.concatenate(poses))
-        told += toss_notes(source, scene, out[name], name)
-    told += [
-        f"{ride.thing!r} goes along on {ride.bearer!r} from {source.times[ride.first]:.2f} to "
-        f"{source.times[ride.last]:.2f} s"
-        for ride in source.rides
-    ]
-    told += [
-        f"{name!r} lies in the {one.hold.side} hand beside {one.lead.thing!r} from "
-        f"{source.times[one.ride.first]:.2f} to {source.times[one.ride.last]:.2f} s"
-        for name, one in beside.items()
-    ]
     rides = (*(companion.ride for companion in source.companions), *source.rides)
+    told += [
+        f"{ride.thing!r} goes along with {ride.bearer!r} from {source.times[ride.first]:.2f} to "
+        f"{source.times[ride.last]:.2f} s"
+        for ride in rides
+    ]
     return Ways(goals, with_riders(out, rides), tuple(told))
 
 

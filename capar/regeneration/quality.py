@@ -473,71 +473,10 @@ class Asserted:
     """The thing that it moves; empty if none."""
 
 
-@dataclass(frozen=True)
-class Disagreement:
-    """A contact of which the table and geometry say different things."""
-
-    after: str
-    """The action at whose end they do."""
-
-    frame: int
-    contact: Contact
-    asserted: bool
-    apart_m: float
-
-    def __str__(self) -> str:
-        """Both said."""
-        verb = "touch" if self.asserted else "do not touch"
-        far = f"{1e3 * self.apart_m:.0f} mm apart"
-        if self.apart_m >= NEAR_M:
-            far = f"more than {1e3 * NEAR_M:.0f} mm apart"
-        who = " and ".join(self.contact)
-        return f"after {self.after} {who} {verb} by the table, and are {far} by geometry"
-
-
-class Measuring:
-    """Distances of a motion's bodies at its frames."""
-
-    def __init__(self, motion: Motion) -> None:
-        self.motion = motion
-        self.around = Surroundings(motion.plan.human, motion.plan.scene)
-        self.known: dict[int, dict[Contact, float]] = {}
-
-    def at_first(self) -> dict[Contact, bool]:
-        """What touches what at the first frame: hands and things, things and what bears them."""
-        scene = self.motion.plan.scene
-        pairs = [(side, name) for side in SIDES for name in scene.things]
-        pairs += [(name, beneath) for name in scene.things if (beneath := scene.support(name))]
-        return {pair: True for pair in pairs if self.holds(pair, 0)[0]}
-
-    def holds(self, contact: Contact, frame: int) -> tuple[bool, bool, float]:
-        """Whether two bodies touch, and whether they do not, within a frame of an event.
-
-        An event lies between two frames, so that both may be so.
-
-        Returns:
-            Both, and how far they are apart at the event; at most ``NEAR_M`` [m].
-        """
-        last = len(self.motion.postures) - 1
-        near = sorted({max(frame - 1, 0), frame, min(frame + 1, last)})
-        apart = {at: self.distances(at).get(contact, NEAR_M) for at in near}
-        touching = [gap <= TOUCHES_M for gap in apart.values()]
-        return any(touching), not all(touching), apart[frame]
-
-    def distances(self, frame: int) -> dict[Contact, float]:
-        """Of every two bodies that are near each other, in both orders [m]."""
-        if frame not in self.known:
-            posture = self.motion.postures[frame]
-            poses = {name: path[frame] for name, path in self.motion.plan.things.items()}
-            self.known[frame] = distances(self.around, posture, poses)
-        return self.known[frame]
-
-
-def distances(
-    around: Surroundings, posture: Float[np.ndarray, "posture"], poses: Mapping[str, RigidTransform]
-) -> dict[Contact, float]:
-    """How far hands, the head and things near each other are apart, in both orders [m]."""
-    around.pose(posture, poses)
+def contact_distances(around: Surroundings, motion: Motion, frame: int) -> dict[Contact, float]:
+    """How far hands, the head and objects near each other are apart, in both orders [m]."""
+    poses = {name: path[frame] for name, path in motion.plan.things.items()}
+    around.pose(motion.postures[frame], poses)
     found: dict[Contact, float] = {}
     for pair in [*around.near(), *around.things_near()]:
         side, _, part = pair.part.partition("_")
@@ -547,37 +486,52 @@ def distances(
     return found
 
 
-def disagreements(motion: Motion, steps: Iterable[Asserted]) -> Iterator[Disagreement]:
-    """Where what steps assert is not what geometry says, at the end of each step.
+def contact_gate(motion: Motion, steps: Iterable[Asserted]) -> Gate:
+    """That the contacts that steps assert are those that geometry has, at the end of each step.
 
-    The table begins with what is measured at the first frame. A step that moves a thing leaves
-    open which other things that one touches, unless it asserts it.
+    A table of contacts begins with what is measured at the first frame. A step that moves an
+    object leaves open which other objects that one touches, unless it asserts it. An event lies
+    between two frames, so that contacts may be as they are a frame before or after.
     """
-    measuring = Measuring(motion)
-    table = measuring.at_first()
+    scene, last = motion.plan.scene, len(motion.postures) - 1
+    around = Surroundings(motion.plan.human, scene)
+    known: dict[int, dict[Contact, float]] = {}
+
+    def apart_m(contact: Contact, frame: int) -> float:
+        if frame not in known:
+            known[frame] = contact_distances(around, motion, frame)
+        return known[frame].get(contact, NEAR_M)
+
+    pairs = [(side, name) for side in SIDES for name in scene.things]
+    pairs += [(name, beneath) for name in scene.things if (beneath := scene.support(name))]
+    table = {
+        pair: True
+        for pair in pairs
+        if min(apart_m(pair, 0), apart_m(pair, min(1, last))) <= TOUCHES_M
+    }
+    wrong: list[tuple[int, str]] = []
     for frame, ending in groupby(sorted(steps, key=_frame), key=_frame):
         for step in (ended := list(ending)):
-            stale = [pair for pair in table if step.moved in pair and pair[0] not in SIDES]
-            for pair in stale:
-                del table[pair]
+            table = {
+                pair: holds
+                for pair, holds in table.items()
+                if step.moved not in pair or pair[0] in SIDES
+            }
             table.update(step.contacts)
+        near = sorted({max(frame - 1, 0), frame, min(frame + 1, last)})
         for pair, holds in table.items():
-            touch, miss, apart_m = measuring.holds(pair, frame)
-            if not (touch if holds else miss):
+            if all((apart_m(pair, at) <= TOUCHES_M) != holds for at in near):
                 actions = " and ".join(dict.fromkeys(step.action for step in ended))
-                yield Disagreement(actions, frame, pair, holds, apart_m)
+                verb = "touch" if holds else "do not touch"
+                far = f"{1e3 * apart_m(pair, frame):.0f} mm apart by geometry"
+                who = " and ".join(pair)
+                wrong.append((frame, f"after {actions} {who} {verb} by the table, and are {far}"))
+    frame, said = wrong[0] if wrong else (-1, "")
+    return Gate("contacts asserted", float(len(wrong)), 0.0, "wrong", False, frame, said)
 
 
 def _frame(step: Asserted) -> int:
     return step.frame
-
-
-def contact_gate(motion: Motion, steps: Iterable[Asserted]) -> Gate:
-    """That the contacts that steps assert are those that geometry has."""
-    found = list(disagreements(motion, steps))
-    said = str(found[0]) if found else ""
-    frame = found[0].frame if found else -1
-    return Gate("contacts asserted", float(len(found)), 0.0, "wrong", False, frame, said)
 
 
 def contacts_of(

@@ -21,8 +21,6 @@ from capar.model.facts import Displaced, Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
 from capar.regeneration.holds import (
-    GRASP_M,
-    GRASP_RAD,
     Companion,
     Launch,
     Ride,
@@ -33,8 +31,6 @@ from capar.regeneration.holds import (
     meetings_of,
     poises_of,
     rides_of,
-    wandering,
-    wanderings,
     with_blows,
     with_touches,
     with_unseen_ends,
@@ -300,7 +296,6 @@ def source_of(
     sides = {hand.sensor: side for side, hand in hands.items()}
     launches, tosses = launches_of(observation.forces, sides, holds, capture.times, paths)
     holds = with_blows(holds, launches)
-    told += wanderings(tracks_of_hands, paths, holds)
     meetings = meetings_of(capture, eyes, paths, touching)
     entered = _entered(capture, holds, hands, touching)
     told += [
@@ -521,30 +516,9 @@ def _check_movers(source: Source, touching: list[Touching]) -> None:
         for first, last in runs(~held):
             far_m = float(np.ptp(moved[first : last + 1]))
             if far_m > MOVES_M:
-                span = f"from {source.times[first]:.2f} to {source.times[last]:.2f} s"
                 raise PlanError(
-                    f"{name!r} moves by {1e3 * far_m:.0f} mm {span} "
-                    + _why(source, name, (first, last), touching)
+                    f"{name!r} moves by {1e3 * far_m:.0f} mm from {source.times[first]:.2f} to "
+                    f"{source.times[last]:.2f} s without a steady grip, and no hand was seen to "
+                    "set it going; end the recording before, or begin it after, with to_s and "
+                    "from_s in a file given with --assume FILE"
                 )
-
-
-def _why(source: Source, name: str, span: tuple[int, int], touching: list[Touching]) -> str:
-    """Why a stretch in which a thing moves has no hold."""
-    for side, hand in source.hands.items():
-        for contact in touching:
-            meets = contact.first <= span[1] and span[0] <= contact.last
-            if contact.body == hand.sensor and contact.other == name and meets:
-                part = slice(contact.first, contact.last + 1)
-                off_m, off_rad = wandering(source.paths[name][part], hand.path[part])
-                if off_m > GRASP_M or off_rad > GRASP_RAD:
-                    return (
-                        f"while the {side} hand touches it, whose grasp gives way by "
-                        f"{1e3 * off_m:.0f} mm and {np.degrees(off_rad):.0f} degrees, more than "
-                        f"{1e3 * GRASP_M:.0f} mm and {np.degrees(GRASP_RAD):.0f} degrees; new "
-                        "grips and things that turn in the hand are not regenerated. A part of "
-                        "the recording with one grip would do: from_s and to_s with --assume FILE"
-                    )
-    return (
-        "without a steady contact with a hand, and no hand was seen to set it going; what moves "
-        "for another reason is not regenerated"
-    )

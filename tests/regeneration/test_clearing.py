@@ -6,7 +6,6 @@ import mujoco
 import numpy as np
 import pytest
 import trimesh
-from scipy.spatial.transform import RigidTransform
 
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
@@ -103,19 +102,3 @@ def test_what_the_head_meets_does_not_push_it(met: tuple[str, ...], pushed: bool
     thing = Thing("mug", box(0.05, 0.05, 0.05), (x + 0.03, y, z - 0.025))
     clear = ClearTask(Surroundings(human, Scene({"mug": thing}, (0.0, 0.0), 0.0)), met)
     assert bool(clear.compute_error(solver.configuration).min() < -0.005) == pushed
-
-
-def test_a_task_that_is_not_active_wants_nothing() -> None:
-    human = Human.of(ready_made("woman"))
-    thing = Thing("box", box(0.3, 0.3, 0.3), (0.0, 0.0, 0.9))
-    clear = ClearTask(Surroundings(human, Scene({"box": thing}, (0.0, 0.0), 0.0)))
-    solver = Solver(human, (0.0, 0.0, 0.0), 0.0)
-    solver.configuration.update(solver.rest)
-    assert clear.compute_error(solver.configuration).min() < -0.01
-    away = RigidTransform.from_translation([5.0, 0.0, 0.0]) * thing.pose
-    clear.place({"box": vectors(away)})
-    assert not clear.compute_error(solver.configuration).any()
-    clear.place({"box": vectors(thing.pose)})
-    clear.active = False
-    assert not clear.compute_error(solver.configuration).any()
-    assert not clear.compute_jacobian(solver.configuration).any()

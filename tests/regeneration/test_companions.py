@@ -9,7 +9,7 @@ from scipy.spatial.transform import RigidTransform
 from capar.body.scripted_actions import action_capture
 from capar.pipelines.round_trips import body, observed_source, round_trip
 from capar.regeneration import PlanError, Source
-from capar.regeneration.holds import Companion, Hold, companions_of, hand_spans
+from capar.regeneration.holds import Hold, companions_of
 from capar.regeneration.planning import reachable
 from capar.regeneration.scenes import drawn_scene, moved, raised, resized_with
 
@@ -82,24 +82,3 @@ def test_a_hand_that_moves_one_of_two_alone_is_refused() -> None:
     paths = {"cup": _way(0.0, 0.1, 0.1, 0.2, 0.3, 0.3), "spoon": _way(0.1, 0.1, 0.1, 0.2, 0.3, 0.3)}
     with pytest.raises(PlanError, match="'cup' by 100 mm without the other"):
         companions_of(holds, paths)
-
-
-def test_what_another_hand_moves_or_nobody_moves_is_no_companion() -> None:
-    way = _way(0.0, 0.1, 0.2)
-    two_hands = Hold("right", "cup", 0, 2), Hold("left", "spoon", 0, 2)
-    assert companions_of(two_hands, {"cup": way, "spoon": way}) == ()
-    still = _way(0.0, 0.0, 0.0)
-    one_hand = Hold("right", "cup", 0, 2), Hold("right", "table", 0, 2)
-    assert companions_of(one_hand, {"cup": still, "table": still}) == ()
-
-
-def test_a_hand_has_its_things_from_the_first_that_it_takes_to_the_last_that_it_lets_go() -> None:
-    cup, spoon, lid = (
-        Hold("right", name, *span)
-        for name, span in (("cup", (0, 8)), ("spoon", (1, 9)), ("lid", (20, 30)))
-    )
-    spans = list(hand_spans([cup, spoon, lid], (Companion(spoon, cup),)))
-    assert spans == [
-        (Hold("right", "cup", 0, 9), frozenset({"cup", "spoon"})),
-        (lid, frozenset({"lid"})),
-    ]

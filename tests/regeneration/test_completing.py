@@ -46,19 +46,17 @@ def _wandering(by_m: float) -> Capture:
 
 
 @pytest.mark.long
-def test_a_grasp_that_gives_way_a_little_is_a_hold_and_is_told() -> None:
+def test_a_grasp_that_gives_way_a_little_is_a_hold() -> None:
     source = observed_source(_wandering(0.012))
     (hold,) = source.holds
     mug = source.paths["mug"].translation
     assert np.linalg.norm(mug[hold.first] - mug[0]) < 0.02
     assert np.linalg.norm(mug[hold.last] - mug[-1]) < 0.02
-    assert any("wanders by up to 1" in note for note in source.notes)
-    assert not any("wanders" in note for note in observed_source(_carried()).notes)
 
 
 @pytest.mark.long
-def test_a_grasp_that_gives_way_too_far_is_refused_with_that_reason() -> None:
-    with pytest.raises(PlanError, match=r"whose grasp gives way by \d+ mm .* with --assume FILE"):
+def test_a_grasp_that_gives_way_too_far_is_refused() -> None:
+    with pytest.raises(PlanError, match=r"without a steady grip.* with --assume FILE"):
         observed_source(_wandering(0.045))
 
 
@@ -166,15 +164,6 @@ def test_every_key_of_a_file_is_read(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.stance[1], 0.5 * np.pi)
 
 
-def test_the_directions_of_hands_are_read_and_told(tmp_path: Path) -> None:
-    path = tmp_path / "assumed.toml"
-    path.write_text("[hand.left]\nfingers = [0, 1, 0]\npalm = [0, 0.1, -1]\n")
-    found = read_completion(path)
-    np.testing.assert_array_equal(found.axes["left"].palm, [0.0, 0.1, -1.0])
-    (note,) = found.notes
-    assert "left hand's fingers point to (0, 1, 0) and its palm faces (0, 0.1, -1)" in note
-
-
 @pytest.mark.parametrize("command", ["regenerate", "roundtrip"])
 def test_what_is_assumed_is_read_by_both_commands(
     command: str,
@@ -190,10 +179,3 @@ def test_what_is_assumed_is_read_by_both_commands(
     missing = str(tmp_path / "none.toml")
     assert exit_code(monkeypatch, command, str(folder), "--assume", missing) == 2
     assert "none.toml" in capsys.readouterr().err
-
-
-def test_a_force_that_there_is_not_is_refused_with_those_that_are(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert exit_code(monkeypatch, "regenerate", "somewhere", "--force", "hard") == 2
-    assert "similar" in capsys.readouterr().err

@@ -20,7 +20,6 @@ from capar.regeneration.goals import (
     RAIL,
     Constraint,
     constraints_of,
-    flattened,
     planes_of,
     scene_constraints,
     thing_goals,
@@ -130,17 +129,6 @@ def test_what_hangs_on_something_goes_along_with_it_and_not_alone(tmp_path: Path
     file.write_text("[object.door]\nraise_m = 0.1\n")
     with pytest.raises(FileError, match=r"(?s)hangs on 'frame'.*\[object.frame\]"):
         read_scene(file, scene)
-
-
-@given(st.lists(st.floats(-0.003, 0.003), min_size=3, max_size=8))
-def test_a_noisy_way_on_a_plane_is_flattened_and_turns_only_about_the_vertical(
-    noise: list[float],
-) -> None:
-    spots = np.stack([np.linspace(0.0, 0.2, len(noise)), 0.0 * np.array(noise), noise], axis=1)
-    turns = Rotation.from_euler("zx", np.stack([noise, noise], axis=1))
-    made = flattened(RigidTransform.from_components(spots, turns))
-    np.testing.assert_allclose(made.translation[:, 2], made.translation[0, 2], atol=2.1e-4)
-    np.testing.assert_allclose(made.translation[:, :2], spots[:, :2])
 
 
 def test_a_door_is_opened_by_another_body_as_it_was_on_its_hinge() -> None:

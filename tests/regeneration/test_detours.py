@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from capar.regeneration.paths import DETOURS, WORTH_M, smallest_detour
-from capar.regeneration.styles import STRAIGHT, Detour
+from capar.regeneration.styles import Detour
 
 shortfalls = st.lists(st.floats(0.0001, 0.02), min_size=len(DETOURS), max_size=len(DETOURS))
 
@@ -30,21 +30,3 @@ def test_a_way_of_which_no_detour_is_clear_keeps_the_smallest_as_good_as_the_bes
     smaller = DETOURS[: DETOURS.index(chosen)]
     assert all(shorts[detour] >= min(values) + WORTH_M for detour in smaller)
     assert all(detour.size <= chosen.size for detour in smaller)
-
-
-@settings(max_examples=100, deadline=None)
-@given(values=shortfalls, clear=st.integers(0, len(DETOURS) - 1))
-def test_a_clear_detour_is_taken_however_little_too_near_smaller_ones_are(
-    values: list[float], clear: int
-) -> None:
-    shorts = dict(zip(DETOURS, values, strict=True)) | {DETOURS[clear]: 0.0}
-    assert _chosen(shorts) == DETOURS[clear]
-
-
-def test_a_hand_is_not_led_far_around_for_a_tenth_of_a_millimetre() -> None:
-    close = {detour: 0.012 - 0.2 * min(detour.off_m, 0.05) for detour in DETOURS}
-    far = {detour: short - 0.0003 * detour.lift_m for detour, short in close.items()}
-    assert min(far, key=lambda detour: far[detour]).lift_m == 0.35
-    chosen = _chosen(far)
-    assert (chosen.lift_m, chosen.back_m, chosen.off_m) == (0.0, 0.0, 0.05)
-    assert _chosen(dict.fromkeys(DETOURS, 0.001)) == STRAIGHT

@@ -14,7 +14,7 @@ from scipy.spatial.transform import RigidTransform
 
 from capar.body.recording import Truth, write_bundle
 from capar.body.scripted_actions import action_capture
-from capar.model.errors import CaparError, UnknownNameError
+from capar.model.errors import CaparError
 from capar.pipelines.observation import observe
 from capar.pipelines.round_trips import observed_source
 from capar.regeneration import PlanError, Source, capture_of
@@ -35,7 +35,7 @@ from capar.regeneration.efforts import (
 )
 from capar.regeneration.motion import Motion
 from capar.regeneration.quality import Quality
-from capar.regeneration.styles import Kind, arc_shares, own_style, paced
+from capar.regeneration.styles import Kind, own_style, paced
 
 EFFORTS = st.floats(-1.0, 1.0)
 
@@ -209,12 +209,6 @@ def test_what_limits_do_not_allow_is_scaled_down_and_told_with_by_how_much() -> 
     assert "since with more" in str(report)
 
 
-def test_a_time_that_is_too_short_without_an_effort_is_refused() -> None:
-    source = _source("touch")
-    with pytest.raises(PlanError, match="too short to be observed"):
-        _performed(source, Effort(time=1.0), 0.5)
-
-
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
@@ -227,11 +221,6 @@ def test_a_time_that_is_too_short_without_an_effort_is_refused() -> None:
 def test_what_is_no_effort_is_refused_with_what_would_be_one(text: str, problem: str) -> None:
     with pytest.raises(CaparError, match=problem):
         read_effort(text)
-
-
-def test_an_unknown_effort_is_told_which_there_are() -> None:
-    with pytest.raises(UnknownNameError, match=r"bound, direct, flow.*weight"):
-        read_effort("fast=1")
 
 
 def test_styles_without_a_shape_or_speeds_of_their_own_have_no_effort() -> None:
@@ -254,18 +243,6 @@ def test_adverbs_ask_for_efforts_together_and_no_further_than_to_a_pole() -> Non
     assert told[0].startswith("'slowly' asks for the effort time -0.50")
     assert told[1] == "'again' has no effect"
     assert "an effort is stated" in told_of_words(["slowly"], stated=True)[0]
-
-
-def test_speeds_along_a_reshaped_way_are_those_of_the_timing() -> None:
-    source = _source("touch")
-    straight = with_effort(own_style(source), source, Effort(time=0.5))
-    bent = with_effort(own_style(source), source, Effort(time=0.5, space=-1.0))
-    hold = source.holds[0]
-    shares = [
-        arc_shares(style.hands[hold.side].translation[: hold.first + 1])
-        for style in (straight, bent)
-    ]
-    np.testing.assert_allclose(shares[0], shares[1], atol=0.02)
 
 
 def test_the_command_says_what_was_performed_and_refuses_what_is_no_effort(

@@ -14,8 +14,6 @@ from capar.regeneration import Motion, PlanError, Quality, Source, regenerate
 from capar.regeneration.forces import ForceKind, arm_mass
 from capar.regeneration.scenes import raised, resized
 from capar.regeneration.styles import own_style
-from capar.views.tables import force_lines
-from extractors.forces.free_motion import GRAVITY_MPS2
 
 pytestmark = pytest.mark.long
 
@@ -67,13 +65,6 @@ def test_a_push_and_a_toss_are_let_go_and_have_no_restitution_with_the_hand() ->
     np.testing.assert_allclose(toss.bounce, 0.3, atol=0.05)
 
 
-def test_the_thesis_profile_tells_its_own_damping_beside_the_sound_one() -> None:
-    sound, thesis = (observe(struck(), rules=name) for name in ("extended", "thesis"))
-    assert "eq. 3.9" not in "".join(force_lines(sound))
-    assert "eq. 3.9" in "".join(force_lines(thesis))
-    assert thesis.forces[0].damping_per_s == sound.forces[0].damping_per_s
-
-
 @pytest.mark.parametrize("agent", ["same", "woman", "child"])
 def test_a_blow_is_the_same_action_on_every_body(agent: str) -> None:
     (trip,) = round_trips(_source(), (agent,))
@@ -114,16 +105,6 @@ def test_the_same_motion_takes_a_faster_hand(agent: str) -> None:
     assert pace(motion) > 1.05 * pace(slower)
 
 
-@pytest.mark.parametrize("agent", ["same", "child"])
-def test_no_energy_comes_from_nowhere_after_the_blow(agent: str) -> None:
-    motion, _ = _done(agent, ForceKind.SIMILAR)
-    source = motion.plan.source
-    spots = _alone(motion)
-    speeds = np.linalg.norm(np.diff(spots, axis=0), axis=1) * source.rate_hz
-    energy = 0.5 * speeds**2 + GRAVITY_MPS2 * 0.5 * (spots[1:, 2] + spots[:-1, 2])
-    assert np.diff(energy).max() < 1e-3
-
-
 def test_from_a_narrower_way_to_the_edge_the_crate_falls_and_stays_on_the_floor() -> None:
     source = _source()
     scene = resized(raised(source.scene, "table", 0.05), "crate", 0.8)
@@ -155,11 +136,3 @@ def _with_a_foot(capture: Capture) -> Capture:
 def test_a_kick_is_refused_since_feet_keep_their_place() -> None:
     with pytest.raises(PlanError, match=r"'right_foot' sets 'crate' going.*feet keep their place"):
         observed_source(_with_a_foot(struck()))
-
-
-def test_a_thing_too_heavy_for_the_arm_is_not_struck_as_far() -> None:
-    source = _source()
-    style = replace(own_style(source), force=ForceKind.SAME)
-    scene = resized(source.scene, "crate", 1.4)
-    with pytest.raises(PlanError, match=r"would have to strike with .* --force similar would do"):
-        regenerate(source, body("child", source), scene, style)

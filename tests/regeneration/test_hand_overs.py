@@ -17,13 +17,9 @@ from capar.pipelines.trials import trial_of
 from capar.regeneration import PlanError
 from capar.regeneration.captures import joint_capture_of
 from capar.regeneration.hand_overs import (
-    Cast,
     JointMotion,
     JointSource,
-    Place,
-    TwoBodies,
     joint_gates,
-    offer,
     regenerate_together,
 )
 from capar.regeneration.scenes import read_scenes
@@ -74,20 +70,6 @@ def test_both_hands_touch_the_mug_for_the_recorded_time() -> None:
     assert gates["hand-over"].value < 1.0
 
 
-def test_a_smaller_taker_is_handed_it_nearer_to_herself() -> None:
-    source = _source()
-    (passed,) = source.hand_overs
-    scenes = {name: one.scene for name, one in source.sources.items()}
-    spots = {}
-    for agents in (("same", "same"), ("same", "child")):
-        cast = Cast(bodies(agents, source), scenes)
-        spots[agents[1]] = offer(source, cast, passed, Place()).translation
-    recorded = source.sources["giver"].paths["mug"][passed.first].translation
-    assert spots["same"] == pytest.approx(recorded, abs=1e-6)
-    assert spots["child"][0] > recorded[0] + 0.03
-    assert spots["child"][2] == pytest.approx(recorded[2], abs=1e-6)
-
-
 def test_bodies_that_are_too_far_apart_are_refused_with_what_would_do(tmp_path: Path) -> None:
     source = _source()
     path = tmp_path / "far.toml"
@@ -107,15 +89,6 @@ def test_a_body_that_stands_in_the_other_one_fails_the_gate_between_them() -> No
     gates = {gate.name: gate for gate in joint_gates(made.source, walked)}
     assert not gates["bodies apart"].passed
     assert gates["bodies apart"].value < -5.0
-
-
-def test_the_distance_of_two_bodies_is_that_of_their_nearest_parts() -> None:
-    human = _source().sources["giver"].human
-    both = TwoBodies(human, human)
-    gap_m, part, other = both.nearest(human.posture(), human.posture(place=(0.0, 0.58, 0.0)))
-    assert {part.partition("_")[0], other.partition("_")[0]} == {"left", "right"}
-    nearer_m, _, _ = both.nearest(human.posture(), human.posture(place=(0.0, 0.56, 0.0)))
-    assert gap_m - nearer_m == pytest.approx(0.02, abs=0.005)
 
 
 def test_bodies_are_named_once_for_all_or_by_their_agent() -> None:

@@ -15,7 +15,7 @@ from capar.body.scripted_actions import action_capture
 from capar.model.capture import Capture, Shape, Stream, TagType
 from capar.model.facts import Displaced, Touching
 from capar.pipelines.round_trips import body, observed_source
-from capar.regeneration import PlanError, planning
+from capar.regeneration import PlanError
 from capar.regeneration.body_frames import body_frames, free_pose, rest_pose
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.goals import TOUCH_M, touching_shift
@@ -27,7 +27,7 @@ from capar.regeneration.holds import (
     with_touches,
     with_unseen_ends,
 )
-from capar.regeneration.planning import Draft, reachable
+from capar.regeneration.planning import Draft
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import HandAxes, Source, source_of, stated_hand_frame
@@ -88,22 +88,6 @@ def test_a_hand_is_moved_to_the_nearest_surface(
     surface: Callable[[float], float], moved_m: float
 ) -> None:
     assert abs(touching_shift(surface, 0.1) - moved_m - TOUCH_M) < 1e-4
-
-
-def test_a_hand_that_was_recorded_far_from_what_it_takes_has_no_grip() -> None:
-    source = _source("touch")
-    hand = source.hands["right"]
-    palm = hand.path[source.holds[0].first].rotation.apply([0.0, 0.0, 1.0])
-    near, far = (
-        source_of(_shifted(source.capture, "crate", off_m * palm), source.observation)
-        for off_m in (0.06, 0.16)
-    )
-    held = reachable(near, near.scene, near.human).grips
-    assert [grip.touches for grip in held] == [True]
-    grips, missed = Draft(far, far.scene, far.human, own_style(far)).reachable_grips()
-    assert not grips[0].touches
-    assert missed is not None
-    assert "beside 'crate' and not on its surface" in missed and "[hand.SIDE]" in missed
 
 
 @cache
@@ -176,16 +160,6 @@ def test_a_hand_may_slide_on_what_it_has_put_down_and_holds_it_meanwhile(
     assert (hold.first, hold.last) == (10, last)
 
 
-def test_what_is_put_down_stands_still_from_when_it_was_seen_to() -> None:
-    draft = _draft()
-    hold = draft.source.holds[0]
-    down, after = draft.goals[hold.thing][-2:]
-    assert down.frame < after.frame == hold.last
-    path = draft.things[hold.thing].translation
-    assert np.ptp(path[down.frame : after.frame + 1], axis=0).max() == 0.0
-    assert np.linalg.norm(path[down.frame - 3] - path[down.frame]) > 0.0
-
-
 @pytest.mark.parametrize(("first", "held"), [(0, (0, 80)), (1, (20, 80))])
 def test_a_hand_that_nobody_saw_come_holds_the_thing_from_the_first_frame(
     first: int, held: tuple[int, int]
@@ -233,19 +207,6 @@ def test_what_is_tipped_at_the_mouth_meets_it_from_when_it_comes_to_when_it_leav
     frames = [meeting.first for meeting in source.meetings]
     assert [meeting.last for meeting in source.meetings] == frames == sorted(set(frames))
     assert (frames[0], frames[-1], len(frames)) == (contact.first, contact.last, INSTANTS)
-
-
-def test_hands_are_led_more_firmly_at_events_alone() -> None:
-    source = _source("pick_up")
-    usual, firmer = (planning.grasps(source, 0.5, (), weight) for weight in (1.0, 2.0))
-    for hold in source.holds:
-        for frame in (hold.first, hold.last):
-            assert usual[hold.side][frame] == pytest.approx(1.0)
-            assert firmer[hold.side][frame] == pytest.approx(2.0)
-        halfway = (hold.first + hold.last) // 2
-        assert firmer[hold.side][halfway] == pytest.approx(1.0)
-        again = planning.grasps(source, 0.5, (halfway,), 2.0)
-        assert again[hold.side][halfway] == pytest.approx(2.0)
 
 
 def test_a_hand_that_is_about_to_arrive_when_the_recording_begins_is_as_far_from_there() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import observations
 import pytest
 from exit_codes import exit_code
-from spoken_worlds import DEMO, RATE_HZ, spoken, words, world
+from spoken_worlds import DEMO, RATE_HZ, words, world
 
 from capar.body.recording import Truth, write_bundle
 from capar.body.scripted_actions import action_capture
@@ -96,16 +96,6 @@ def test_actions_that_one_recording_does_in_that_order_are_performed_as_one() ->
     assert [each.action for each in choice.steps] == ["Reach", "MoveObjTo"]
     first, second = _chosen("put the mug on the table and reach for it", known, scene="demo")
     assert first.recording is second.recording
-
-
-def test_the_requests_were_written_for_three_worlds() -> None:
-    rows = spoken()
-    assert len(rows) == 20
-    assert {each.world for each in rows} == {"demo", "crate", "kitchen"}
-    assert all(bool(each.performs) != bool(each.refused) for each in rows)
-    for each in rows:
-        for thing in each.things:
-            assert np.isfinite(world(each.world).thing(thing).place).all()
 
 
 @pytest.mark.long

@@ -25,7 +25,6 @@ from capar.regeneration.stepping import (
     approached,
     step_to,
     stepping_quality,
-    strides_to,
 )
 from capar.regeneration.styles import own_style
 
@@ -64,15 +63,6 @@ def test_one_foot_bears_at_every_moment_and_the_other_one_is_lifted() -> None:
         heights = feet[f"{side}_foot"][0][:, 2]
         assert np.ptp(heights[made.bears[side]]) < 0.003
         assert np.ptp(heights) == pytest.approx(RISE_M, abs=0.005)
-
-
-def test_no_step_is_longer_than_the_body_allows_and_feet_take_turns() -> None:
-    source, child = _source(), body("child", _source())
-    strides = strides_to(child, source.scene, beside(source.scene, 0.0, 0.5).place)
-    sides = [stride.side for stride in strides]
-    assert sides == ["left", "right"] * (len(strides) // 2)
-    longest = max(np.hypot(*stride.by) for stride in strides)
-    assert longest <= STRIDE * child.measures["stature"] + 1e-9
 
 
 def test_a_foot_that_slides_while_it_bears_and_a_lost_balance_fail() -> None:

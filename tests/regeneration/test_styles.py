@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from capar.body.scripted_actions import action_capture
-from capar.model.errors import UnknownNameError
 from capar.pipelines.observation import observe
 from capar.pipelines.round_trips import by_hand, observed_source
 from capar.regeneration import PlanError, Source, capture_of, regenerate
@@ -18,7 +17,6 @@ from capar.regeneration.styles import (
     mapped,
     own_style,
     paced,
-    style_kind,
 )
 
 
@@ -50,13 +48,6 @@ def test_the_left_hand_does_what_the_right_one_did_with_the_same_things() -> Non
     first = {link.ee: link.segments for link in source.observation.links}
     assert names["left_hand"] == [each.name for each in first["right_hand"]]
     assert by_hand(source, "right") is source
-
-
-def test_both_hands_are_not_one() -> None:
-    with pytest.raises(UnknownNameError, match="hand"):
-        by_hand(_source("touch"), "upper")
-    with pytest.raises(PlanError, match="both hands take something"):
-        by_hand(_source("pick_up"), "left")
 
 
 @pytest.mark.parametrize("duration_s", [3.5, 8.0])
@@ -107,8 +98,3 @@ def test_every_style_leads_from_the_start_to_the_goal(kind: Kind) -> None:
     if kind in {Kind.VEL, Kind.EVEN}:
         way = np.linalg.norm(np.diff(made.translation, axis=0), axis=1).sum()
         assert way == pytest.approx(np.linalg.norm(made.translation[-1] - made.translation[0]))
-
-
-def test_an_unknown_style_is_told_which_there_are() -> None:
-    with pytest.raises(UnknownNameError, match="even, frame, path, vel"):
-        style_kind("fast")
