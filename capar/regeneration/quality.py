@@ -504,11 +504,8 @@ def contact_gate(motion: Motion, steps: Iterable[Asserted]) -> Gate:
 
     pairs = [(side, name) for side in SIDES for name in scene.things]
     pairs += [(name, beneath) for name in scene.things if (beneath := scene.support(name))]
-    table = {
-        pair: True
-        for pair in pairs
-        if min(apart_m(pair, 0), apart_m(pair, min(1, last))) <= TOUCHES_M
-    }
+    begins = {0, min(1, last)}
+    table = {p: True for p in pairs if min(apart_m(p, at) for at in begins) <= TOUCHES_M}
     wrong: list[tuple[int, str]] = []
     for frame, ending in groupby(sorted(steps, key=_frame), key=_frame):
         for step in (ended := list(ending)):
