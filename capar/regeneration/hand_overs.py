@@ -131,8 +131,11 @@ def all_holds(source: JointSource) -> tuple[Hold, ...]:
     return tuple(sorted(holds, key=lambda hold: (hold.first, hold.side)))
 
 
-SHIFTS = ((0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0.0, -0.1))
-"""Other places that are tried, from the usual one towards the taker and upwards [m]."""
+Place = tuple[float, float]
+"""Where something is handed over, from the usual place towards the taker and upwards [m]."""
+
+PLACES: tuple[Place, ...] = ((0.0, 0.0), (0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0.0, -0.1))
+"""The places that are tried, the usual one first [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,36 +147,6 @@ class Cast:
 
     scenes: Mapping[str, Scene]
     """Likewise."""
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where something is handed over, from the usual place between two bodies."""
-
-    nearer_m: float = 0.0
-    """Towards the taker [m]."""
-
-    higher_m: float = 0.0
-    by_stature: bool = False
-    """Whether it is as high as the mean of both statures has it, above what is beneath; else as
-    far above where the thing was at first as it was recorded."""
-
-    @property
-    def words(self) -> str:
-        """How it differs from the usual one; empty where it does not."""
-        if self.by_stature:
-            return "as high as the mean of both statures has it"
-        taker = f"{abs(self.nearer_m):.1f} m nearer to the {'taker' * (self.nearer_m > 0)}"
-        taker += "giver" * (self.nearer_m < 0)
-        high = f"{abs(self.higher_m):.1f} m {'higher' if self.higher_m > 0 else 'lower'}"
-        return " and ".join([taker] * bool(self.nearer_m) + [high] * bool(self.higher_m))
-
-
-def places() -> Iterator[Place]:
-    """The places that are tried, the usual one first."""
-    yield Place()
-    yield Place(by_stature=True)
-    yield from (Place(nearer_m, higher_m) for nearer_m, higher_m in SHIFTS)
 
 
 def joint_ways(source: JointSource, cast: Cast, style: Style, place: Place) -> Ways:
@@ -193,11 +166,10 @@ def joint_ways(source: JointSource, cast: Cast, style: Style, place: Place) -> W
         before, after = one.paths[passed.thing][passed.first], offer(source, cast, passed, place)
         goals[passed.thing] = _through(one, scene, goals[passed.thing], passed, before, after)
         x, y, z = after.translation
-        shifted = f", {place.words}, since there it is out of reach" if place.words else ""
         told.append(
             f"{passed.giver} hands {passed.thing!r} to {passed.taker} at "
             f"{one.times[passed.first]:.2f} s at ({x:.2f}, {y:.2f}, {z:.2f}) m, between them as "
-            f"their statures are{shifted}"
+            f"their statures are, {place[0]:+.1f} m to the taker, {place[1]:+.1f} m upwards"
         )
     ways = thing_paths(one, scene, goals, human, style)
     return replace(ways, told=(*told, *ways.told))
@@ -227,31 +199,23 @@ def offer(source: JointSource, cast: Cast, passed: HandOver, place: Place) -> Ri
         cast.humans[name].measures["stature"] / source.sources[name].human.measures["stature"]
         for name in pair
     ]
-    (start, way), (new_start, new_way) = (_line(scenes) for scenes in (
-        [old.scene for old in olds], news
-    ))  # fmt: skip
+    (start, way), (new_start, new_way) = (
+        (np.asarray(giver.place), np.subtract(taker.place, giver.place))
+        for giver, taker in ([old.scene for old in olds], news)
+    )
     length, new_length = np.linalg.norm(way), np.linalg.norm(new_way)
     local = before.translation[:2] - start
     share = float(local @ way) / length**2
     aside = float(local @ _left(way)) / length
     shares = np.array([share * ratios[0], (1.0 - share) * ratios[1]])
-    divided = float(shares[0] / shares.sum()) + place.nearer_m / new_length
+    divided = float(shares[0] / shares.sum()) + place[0] / new_length
     flat = new_start + divided * new_way + aside * np.mean(ratios) * _left(new_way) / new_length
     old_scene, new_scene = olds[0].scene, news[0]
     gone = before.translation[2] - old_scene.thing(passed.thing).place[2]
     high = new_scene.thing(passed.thing).place[2] + gone
-    if place.by_stature:
-        by_body = float(np.mean(ratios)) * (before.translation[2] - old_scene.floor_m)
-        high = max(new_scene.floor_m + by_body, _beneath(new_scene, passed.thing, flat) + gone)
     turn = _heading(new_way) - _heading(way)
     own = Rotation.from_euler("z", turn) * before.rotation
-    return RigidTransform.from_components([*flat, high + place.higher_m], own)
-
-
-def _line(scenes: list[Scene]) -> tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]:
-    """Where the giver stands, and the way from there to the taker [m]."""
-    giver, taker = (np.asarray(scene.place) for scene in scenes)
-    return giver, taker - giver
+    return RigidTransform.from_components([*flat, high + place[1]], own)
 
 
 def _left(way: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
@@ -260,18 +224,6 @@ def _left(way: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
 
 def _heading(way: Float[np.ndarray, "2"]) -> float:
     return float(np.arctan2(way[1], way[0]))
-
-
-def _beneath(scene: Scene, name: str, spot: Float[np.ndarray, "2"]) -> float:
-    """How high a thing's origin is when it stands on what is fixed there, or on the floor [m]."""
-    tops = [scene.floor_m]
-    for thing in scene.things.values():
-        if thing.tag is TagType.FIXED:
-            corners = thing.pose.apply(np.array(thing.shape.vertices))
-            near, far = corners.min(axis=0), corners.max(axis=0)
-            if (near[:2] <= spot).all() and (spot <= far[:2]).all():
-                tops.append(float(far[2]))
-    return max(tops) - float(scene.thing(name).shape.bounds[0, 2])
 
 
 def _through(
@@ -455,7 +407,7 @@ def _reachable(source: JointSource, cast: Cast, kind: Kind) -> tuple[Place, dict
     """
     for name, human in cast.humans.items():
         check_stance(cast.scenes[name], human)
-    usual, *others = places() if source.hand_overs else [Place()]
+    usual, *others = PLACES if source.hand_overs else PLACES[:1]
     why = ""
     for place, most in [*((place, 1) for place in (usual, *others)), (usual, MOST_TURNS)]:
         try:
@@ -502,7 +454,7 @@ def _remedy(source: JointSource, cast: Cast, kind: Kind) -> str:
         try:
             for name, human in changed.humans.items():
                 check_stance(changed.scenes[name], human)
-            _drafts(source, changed, kind, Place(), 1)
+            _drafts(source, changed, kind, PLACES[0], 1)
         except PlanError:
             continue
         return f"{words} would do"

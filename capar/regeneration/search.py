@@ -12,7 +12,8 @@ grips   the recorded one, turned: smallest turns first    a table or crate of an
 place   the given one, then twelve around it              a wrist at its limit
 paths   the recorded one, lifted, kept off at its ends    a table's edge, the rim of a mug
 motion  as planned                                        nearly all
-        more care: wider margins, hands led more firmly   a mug cut in passing, a late hand
+        wider margins of free hands                       a mug cut in passing
+        hands led more firmly besides                     a hand that arrives late
         drawn to the key postures of the grips            an elbow that bent the other way
         grips that reach where the motion was worst       reach between two key postures
 refuse  remedies: nearer, higher, lower, smaller, taller  what is out of reach
@@ -23,6 +24,7 @@ keeps the one that fails fewest gates (``quality``).
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from capar.body.human import Human
 from capar.regeneration.motion import Guide, Motion, guide_of, perform_plan
@@ -33,8 +35,9 @@ from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import Style
 
-MORE_CARE = Care(margin_m=0.03, off_m=0.015, firm_s=1.0, weight=2.0)
-"""How free hands keep from objects, and how firmly hands are led, where the usual fails."""
+WIDER = Care(margin_m=0.03, off_m=0.015)
+CARES = (Care(), WIDER, replace(WIDER, firm_s=1.0, weight=2.0))
+"""How free hands keep from objects, and how firmly hands are led; the next where that fails."""
 
 BY_CARE = {"penetration", "free hand clear", "event position", "event rotation", "on the way"}
 """The gates that more care may mend: a hand that is led firmly for longer arrives in time."""
@@ -79,7 +82,7 @@ def best_motion(draft: Draft, again: Callable[[frozenset[int]], Draft]) -> tuple
 def _careful(draft: Draft, guide: Guide | None = None) -> tuple[Motion, Quality]:
     """The best motion of some grips, hands being led with more care where it takes that."""
     tried: list[tuple[Motion, Quality]] = []
-    for care in (Care(), MORE_CARE):
+    for care in CARES:
         motion = perform_plan(led(draft, care), guide)
         tried.append((motion, quality(motion)))
         if not BY_CARE & set(tried[-1][1].failed):
