@@ -394,7 +394,7 @@ def _perform_instance(
 ) -> None:
     """Perform an action or a capture's on objects of a scene, and tell how good it is."""
     from capar.pipelines.instantiation import Knowledge, instantiate
-    from capar.pipelines.preparation import Performed, prepare, ways_of
+    from capar.pipelines.preparation import Performed, prepare, procedures_of
     from capar.pipelines.preparation import opened as open_recording
     from capar.pipelines.round_trips import by_hand
 
@@ -406,7 +406,7 @@ def _perform_instance(
         asked, world = _asked(what, agent, words, source, scene, parts, step=step)
         instance = instantiate(asked, recording, source, known, _asker())
         prepared = prepare(
-            instance, world, known.kinds, lambda: ways_of(recordings, open_recording)
+            instance, world, known.kinds, lambda: procedures_of(recordings, open_recording)
         )
     source, place, names = instance.placed(prepared.world.scene)
     human = instance.asked.human

@@ -46,7 +46,7 @@ class Applied:
     """Who performs: the name, and the kind if that is another."""
 
     kinds: Mapping[str, str]
-    """What takes the part of each recorded thing, by its kind."""
+    """What takes the part of each recorded object, by its kind."""
 
 
 def check_applicable(applied: Applied, abilities: Abilities) -> tuple[str, ...]:
@@ -109,7 +109,7 @@ BESIDE_M = 0.2
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """What a user asks for: an action, who does it, where, and with which things."""
+    """What a user asks for: an action, who does it, where, and with which objects."""
 
     action: str
     agent: tuple[str, ...]
@@ -117,7 +117,7 @@ class Asked:
 
     human: Human
     stated: Mapping[str, str]
-    """The scene's thing for recorded ones."""
+    """The scene's object for recorded ones."""
 
     scene: Scene
     own: bool
@@ -129,7 +129,7 @@ class Asked:
 
 @dataclass(frozen=True, eq=False)
 class Instance:
-    """An action whose things are all bound, before anything moves."""
+    """An action whose objects are all bound, before anything moves."""
 
     asked: Asked
     recording: Recording
@@ -142,13 +142,13 @@ class Instance:
 
     @property
     def parts(self) -> dict[str, str]:
-        """The scene's thing for each recorded one."""
+        """The scene's object for each recorded one."""
         return {binding.role: binding.thing for binding in self.bindings}
 
     def placed(self, scene: Scene) -> tuple[Source, Scene, dict[str, str]]:
-        """The recorded performance and a scene, in which its things have their recorded names.
+        """The recorded performance and a scene, in which its objects have their recorded names.
 
-        What does not stand where it is put in the end is put there in that thing's measures.
+        What does not stand where it is put in the end is put there in that object's measures.
 
         Returns:
             Both, and the scene's names by the recorded ones.
@@ -181,7 +181,7 @@ def instantiate(
     """Bind every part of a recorded action, and check that it is applicable.
 
     Raises:
-        UnknownNameError: A part or a thing that was stated does not exist.
+        UnknownNameError: A part or an object that was stated does not exist.
         PlanError: A part is open, or the action is not applicable; the message says what would
             make it possible.
     """
@@ -239,7 +239,7 @@ def find_action(
 ) -> KnownAction:
     """The recording that holds an action: as a whole, else as a step or a more special one.
 
-    Of several, those with things of the stated names count first, then the one with the fewest
+    Of several, those with objects of the stated names count first, then the one with the fewest
     steps of all hands, then the first by name.
 
     Raises:

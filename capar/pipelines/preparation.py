@@ -62,14 +62,14 @@ Open = Callable[[Recording], Source]
 
 
 @dataclass(frozen=True, eq=False)
-class Way:
-    """A recording of one hand that handles one thing, and else at most what that stands on."""
+class Procedure:
+    """A recording of one hand that handles one object, and else at most what that stands on."""
 
     recording: Recording
     source: Source
     side: str
     part: str
-    """The thing that the hand handles."""
+    """The object that the hand handles."""
 
     steps: tuple[PlanStep, ...]
 
@@ -86,7 +86,7 @@ class Way:
         return found | ({"stand": (rows[0][count], rows[1][count])} if count > 1 else {})
 
     def moves(self, number: int) -> bool:
-        """Whether a step moves the thing."""
+        """Whether a step moves the object."""
         return self.steps[number].moves
 
     def frame(self, number: int) -> int:
@@ -111,7 +111,7 @@ class Way:
         return by_hand(source, side) if any(h.side != side for h in source.holds) else source
 
 
-def ways_of(recordings: Iterable[Recording], open_source: Open) -> tuple[Way, ...]:
+def procedures_of(recordings: Iterable[Recording], open_source: Open) -> tuple[Procedure, ...]:
     """The recordings among some in which one hand handles one object and nothing else is done."""
     found = []
     for recording in recordings:
@@ -121,21 +121,21 @@ def ways_of(recordings: Iterable[Recording], open_source: Open) -> tuple[Way, ..
     return tuple(found)
 
 
-def _way(recording: Recording, open_source: Open) -> list[Way]:
+def _way(recording: Recording, open_source: Open) -> list[Procedure]:
     try:
         source = open_source(recording)
         plan = steps_of(source.observation)
     except (PlanError, PlanExportError):
         return []
-    alone = source.launches or source.tosses
-    if source.poises or source.meetings or alone or not source.holds:
+    alone = source.releases or source.throws
+    if source.leanings or source.meetings or alone or not source.holds:
         return []
     side = source.holds[0].side
     steps = tuple(step for step in plan.links[source.hands[side].sensor] if step.ipar.objects)
     things = {name for step in steps for name in step.ipar.objects}
     if not things <= set(source.scene.things):
         return []
-    return [Way(recording, source, side, source.holds[0].thing, steps)]
+    return [Procedure(recording, source, side, source.holds[0].thing, steps)]
 
 
 def opened(recording: Recording) -> Source:
@@ -183,19 +183,19 @@ def _cut(source: Source, from_s: float, to_s: float) -> Source:
 
 
 ROOM_M = 0.01
-"""Things that are nearer are in each other's way [m]."""
+"""Objects that are nearer are in each other's path [m]."""
 
 ASIDE_M = 0.06
-"""So far from others a thing is put: a hand has room between them [m]."""
+"""So far from others an object is put: a hand has room between them [m]."""
 
 EDGE_M = 0.02
-"""How far a thing that is put down stays from its support's edge [m]."""
+"""How far an object that is put down stays from its support's edge [m]."""
 
 STEP_M = 0.06
 """Of the grid on which places are sought [m]."""
 
 ARM = 0.42
-"""How far from where it stands a body puts things, as a share of its stature [1]."""
+"""How far from where it stands a body puts objects, as a share of its stature [1]."""
 
 MOST = 8
 """Places that are offered on each support [1]."""
@@ -262,18 +262,18 @@ def _corners(thing: Thing) -> Float[np.ndarray, "2 3"]:
 
 
 def _within(thing: Thing, pose: RigidTransform, support: Thing) -> bool:
-    """Whether all of a thing is above its support."""
+    """Whether all of an object is above its support."""
     spots = pose.apply(np.array(thing.shape.vertices))[:, :2]
     low, high = _corners(support)[:, :2]
     return bool((spots > low + EDGE_M).all() and (spots < high - EDGE_M).all())
 
 
 Condition = tuple[str, ...]
-"""``touch`` with a hand and a thing, ``free`` with a hand, ``stand`` with a thing and its support,
-``clear`` with the thing whose goal it is, or ``bare`` with a thing."""
+"""``touch`` with a hand and an object, ``free`` with a hand, ``stand`` with an object and its support,
+``clear`` with the object whose goal it is, or ``bare`` with an object."""
 
 Touching = frozenset[tuple[str, str]]
-"""Hands, by their sides, with the things that they touch."""
+"""Hands, by their sides, with the objects that they touch."""
 
 MEANING = {
     "touch": "contact({} hand, {})",
@@ -299,10 +299,10 @@ class Problem:
     world: World
     wanted: tuple[Condition, ...]
     goals: Mapping[str, RigidTransform]
-    """Where the action puts things in the end, by the scene's names."""
+    """Where the action puts objects in the end, by the scene's names."""
 
     parts: frozenset[str]
-    """The things of the scene that take part in the action."""
+    """The objects of the scene that take part in the action."""
 
     room: Room
     kinds: Kinds
@@ -316,8 +316,8 @@ def told(condition: Condition) -> str:
 def problem_of(instance: Instance, world: World, kinds: Kinds) -> Problem:
     """What a bound action needs of a world.
 
-    Hands touch what they touch when the recording begins, and nothing else; things stand as its
-    preparatory specifications say; where things are put there is room; what is moved bears nothing
+    Hands touch what they touch when the recording begins, and nothing else; objects stand as its
+    preparatory specifications say; where objects are put there is room; what is moved bears nothing
     that it did not bear.
 
     Raises:
@@ -327,7 +327,7 @@ def problem_of(instance: Instance, world: World, kinds: Kinds) -> Problem:
     parts = instance.parts
     goals = {}
     for role, pose in put_down_poses(source, where).items():
-        if role in parts:  # as the frame of the scene's thing, of which the part's is moved
+        if role in parts:  # as the frame of the scene's object, of which the part's is moved
             own = world.scene.thing(parts[role])
             goals[own.name] = pose * where.thing(role).pose.inv() * own.pose
     began = {(h.side, parts[h.thing]) for h in source.holds if h.first == 0 and h.thing in parts}
@@ -361,7 +361,7 @@ def _stands(observation: Observation) -> Iterator[tuple[str, str]]:
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Where a thing may be put."""
+    """Where an object may be put."""
 
     term: Term
     thing: str
@@ -371,8 +371,8 @@ class Place:
     """The only recording that puts it there; empty where any one may."""
 
 
-def places_of(problem: Problem, ways: Sequence[Way]) -> tuple[Place, ...]:
-    """Where things may be put: free places, and as far from where they stand as was recorded."""
+def places_of(problem: Problem, ways: Sequence[Procedure]) -> tuple[Place, ...]:
+    """Where objects may be put: free places, and as far from where they stand as was recorded."""
     scene, found = problem.world.scene, list[Place]()
     fixed = sorted(n for n, thing in scene.things.items() if thing.tag is TagType.FIXED)
     for name in mobile(scene):
@@ -386,12 +386,12 @@ def places_of(problem: Problem, ways: Sequence[Way]) -> tuple[Place, ...]:
     return tuple(found)
 
 
-def _moving(way: Way) -> list[int]:
+def _moving(way: Procedure) -> list[int]:
     return [number for number in range(len(way.steps)) if way.moves(number)]
 
 
-def _slid(problem: Problem, way: Way, thing: Thing) -> list[Place]:
-    """Where a thing is that goes as far along its support as the recorded one did."""
+def _slid(problem: Problem, way: Procedure, thing: Thing) -> list[Place]:
+    """Where an object is that goes as far along its support as the recorded one did."""
     scene, path = problem.world.scene, way.source.paths[way.part].translation
     turn = Rotation.from_euler("z", scene.heading - way.source.scene.heading)
     x, y = np.asarray(thing.place)[:2] + turn.apply(path[-1] - path[0])[:2]
@@ -433,7 +433,7 @@ def _goals(problem: Problem) -> Iterator[Place]:
 
 
 def _meetings(problem: Problem, places: Sequence[Place]) -> Iterator[str]:
-    """Which places of things have no room beside which of others, or beside where these are."""
+    """Which places of objects have no room beside which of others, or beside where these are."""
     for place in places:
         near = problem.room.near({place.thing: place.pose}, ROOM_M)
         for pair in near:
@@ -449,7 +449,7 @@ def _meetings(problem: Problem, places: Sequence[Place]) -> Iterator[str]:
 
 
 def _agreed(problem: Problem, place: Place, other: str) -> bool:
-    """Whether a recording itself puts the thing beside the other one."""
+    """Whether a recording itself puts the object beside the other one."""
     return place.term == ("goal", place.thing) and other in problem.parts
 
 
@@ -460,7 +460,9 @@ def _may_meet(problem: Problem, place: Place, there: Place) -> bool:
     return place.thing != there.thing and bool(apart < far)
 
 
-def way_facts(problem: Problem, ways: Sequence[Way], places: Sequence[Place]) -> Iterator[str]:
+def way_facts(
+    problem: Problem, ways: Sequence[Procedure], places: Sequence[Place]
+) -> Iterator[str]:
     """What recordings can do with either hand and anything that can be moved."""
     scene = problem.world.scene
     for way in ways:
@@ -483,8 +485,8 @@ def way_facts(problem: Problem, ways: Sequence[Way], places: Sequence[Place]) ->
                 yield _fact("room", name, place.thing, place.term)
 
 
-def _strangeness(problem: Problem, way: Way, thing: Thing) -> int:
-    """How many levels up the hierarchy a thing and the recorded one have a kind in common."""
+def _strangeness(problem: Problem, way: Procedure, thing: Thing) -> int:
+    """How many levels up the hierarchy an object and the recorded one have a kind in common."""
     above = problem.kinds(kind_of(way.source.scene.thing(way.part)))
     own = problem.kinds(kind_of(thing))
     return next((level for level, kind in enumerate(above) if kind in own), len(above))
@@ -500,7 +502,7 @@ MOST_STEPS = 16
 PROGRAM = "planning/preparing.lp"
 
 Failed = tuple[str, str, str, Term]
-"""A recording, a hand, a thing and a place, or ``any``, that were tried and are not possible."""
+"""A recording, a hand, an object and a place, or ``any``, that were tried and are not possible."""
 
 
 @dataclass(frozen=True)
@@ -515,7 +517,7 @@ class Planned:
     """Of the step in its recording."""
 
     place: Spot | None
-    """Where it puts the thing [m]; None where it puts nothing."""
+    """Where it puts the object [m]; None where it puts nothing."""
 
     support: str = ""
 
@@ -524,7 +526,7 @@ class Planned:
 class Stage:
     """Steps that one recording does in a row."""
 
-    way: Way
+    way: Procedure
     steps: tuple[Planned, ...]
     term: Term
     """The place as the solver calls it, or ``any``."""
@@ -534,7 +536,7 @@ class Stage:
 
     @property
     def goal(self) -> Planned | None:
-        """The last step that puts the thing somewhere."""
+        """The last step that puts the object somewhere."""
         return next((step for step in reversed(self.steps) if step.place is not None), None)
 
     @property
@@ -549,7 +551,7 @@ def unmet(problem: Problem) -> tuple[Condition, ...]:
 
 
 def shortest(
-    problem: Problem, ways: Sequence[Way], failed: Iterable[Failed] = ()
+    problem: Problem, ways: Sequence[Procedure], failed: Iterable[Failed] = ()
 ) -> tuple[tuple[Stage, ...], tuple[Condition, ...]]:
     """The shortest plan that makes true all that is wanted.
 
@@ -572,12 +574,12 @@ def shortest(
     return (), left
 
 
-def why_unmet(problem: Problem, conditions: Sequence[Condition], ways: Sequence[Way]) -> str:
+def why_unmet(problem: Problem, conditions: Sequence[Condition], ways: Sequence[Procedure]) -> str:
     """Which conditions do not hold, and what would make them hold."""
     return "; ".join(_why(problem, condition, ways) for condition in conditions)
 
 
-def _why(problem: Problem, condition: Condition, ways: Sequence[Way]) -> str:
+def _why(problem: Problem, condition: Condition, ways: Sequence[Procedure]) -> str:
     scene, said = problem.world.scene, f"{told(condition)} does not hold"
     known = ", ".join(sorted({way.recording.name for way in ways})) or "none"
     if condition[0] == "clear":
@@ -603,7 +605,9 @@ def _unmet(answer: Answer) -> tuple[Condition, ...]:
     return tuple(tuple(map(str, one)) for one in found if isinstance(one, tuple))
 
 
-def _stages(answer: Answer, ways: Sequence[Way], places: Sequence[Place]) -> tuple[Stage, ...]:
+def _stages(
+    answer: Answer, ways: Sequence[Procedure], places: Sequence[Place]
+) -> tuple[Stage, ...]:
     by_name = {way.recording.name: way for way in ways}
     by_term = {place.term: place for place in places}
     brought = {(time, thing): by_term[term] for time, thing, term in answer.of("brings")}
@@ -651,7 +655,7 @@ class Performed:
     motion: Motion
     quality: Quality
     names: dict[str, str]
-    """The scene's names of the things by those that the motion has."""
+    """The scene's names of the objects by those that the motion has."""
 
     effort: EffortReport | None = field(default=None, kw_only=True)
     """With which manner it was performed, where one was asked for."""
@@ -703,7 +707,7 @@ def captured_world(place: Capture | Path | str) -> World:
     """The scene of a capture as it begins, with what the hands touch then.
 
     Raises:
-        CaparError: It has a fault, no sensor of the head, or a thing without a shape.
+        CaparError: It has a fault, no sensor of the head, or an object without a shape.
     """
     trial = trial_of(place)
     return _world(trial, observe(trial), captured_scene(trial))
@@ -718,11 +722,11 @@ def _world(capture: Capture, observation: Observation, scene: Scene) -> World:
 
 
 def prepare(
-    instance: Instance, world: World, kinds: Kinds, ways: Callable[[], tuple[Way, ...]]
+    instance: Instance, world: World, kinds: Kinds, ways: Callable[[], tuple[Procedure, ...]]
 ) -> Prepared:
     """Make true what an action needs, by the shortest plan that can be performed well.
 
-    ``ways`` opens the recordings of which a plan can be made, only if one is needed.
+    ``paths`` opens the recordings of which a plan can be made, only if one is needed.
 
     Raises:
         PlanError: No plan makes it true; the message says what does not hold and what would help.
@@ -800,7 +804,7 @@ def _stage(stage: Stage, world: World, human: Human) -> Done:
 
 
 def _parts(stage: Stage, source: Source, world: World) -> dict[str, str]:
-    """The thing, and what it stands on at both ends, in the parts of the recorded ones."""
+    """The object, and what it stands on at both ends, in the parts of the recorded ones."""
     step, goal = stage.steps[0], stage.goal
     parts = {stage.way.part: step.thing}
     first, last = ends_on(source, stage.way.part)

@@ -232,7 +232,7 @@ def bodies(agents: Sequence[str], source: JointSource) -> dict[str, Human]:
 
 
 def drawn_scenes(source: JointSource, number: int, seed: int) -> dict[str, Scene]:
-    """The drawn things of a number, and everybody where that one stood; 0 is as recorded."""
+    """The drawn objects of a number, and everybody where that one stood; 0 is as recorded."""
     scenes = {name: one.scene for name, one in source.sources.items()}
     if not number:
         return scenes

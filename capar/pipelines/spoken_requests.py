@@ -46,7 +46,7 @@ class RequestError(PlanError):
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """An action that is to be done, on things by their names in the scene."""
+    """An action that is to be done, on objects by their names in the scene."""
 
     action: str
     said: str
@@ -73,7 +73,7 @@ def read_requests(
 
     Raises:
         RequestError: The words cannot be read or ask a question, nobody was observed doing that,
-            or a thing is not there.
+            or an object is not there.
     """
     try:
         value = parse(text, vocabulary)
@@ -125,7 +125,7 @@ def _sides(ee: str) -> frozenset[str]:
 
 
 def find_thing(word: str, scene: Scene) -> Thing:
-    """The thing that a word means: its name, else its kind.
+    """The object that a word means: its name, else its kind.
 
     Raises:
         RequestError: There is none, or there are several.
@@ -164,7 +164,7 @@ class Performance:
     motion: Motion
     quality: Quality
     names: dict[str, str]
-    """The scene's names of the things by those that the motion has."""
+    """The scene's names of the objects by those that the motion has."""
 
     notes: tuple[str, ...]
     effort: efforts.EffortReport | None = None
@@ -175,7 +175,7 @@ def choices(requests: Sequence[Request], recordings: Sequence[Recording]) -> tup
     """A recording for every request, in order; one for several where it does them in that order.
 
     Of several recordings the one with the fewest steps of all hands is chosen, then the one that
-    handles things of the same names, then the first by name.
+    handles objects of the same names, then the first by name.
 
     Raises:
         RequestError: No recording does what is asked for.
@@ -259,13 +259,13 @@ def _acting(recording: Recording) -> set[str]:
 
 
 def _one_thing_a_part(requests: Sequence[Request], steps: Sequence[Step]) -> bool:
-    """Whether a recorded thing that is handled stands for one thing throughout."""
+    """Whether a recorded object that is handled stands for one object throughout."""
     pairs = {(s.objects[0], r.objects[0]) for r, s in zip(requests, steps, strict=True)}
     return len(dict(pairs)) == len(pairs)
 
 
 def _parts(requests: Sequence[Request], steps: Sequence[Step]) -> dict[str, str]:
-    """The scene's thing for each recorded one that is handled."""
+    """The scene's object for each recorded one that is handled."""
     return {s.objects[0]: r.objects[0] for r, s in zip(requests, steps, strict=True)}
 
 
@@ -304,7 +304,7 @@ def perform(
         choice: What is performed.
         scene: Where.
         human: Who performs.
-        kind: What of the recorded way is kept.
+        kind: What of the recorded path is kept.
         duration_s: How long it takes [s]; as long as it did, unless stated.
         hand: Which hand does it; the recorded one, unless stated or asked for.
         effort: In which manner; as the adverbs of the requests say, unless stated.
@@ -365,7 +365,7 @@ def _cast(choice: Choice, source: Source, scene: Scene) -> tuple[Cast, dict[str,
 
 
 def _check_place(request: Request, source: Source) -> None:
-    """In a thing is another place than on it."""
+    """In an object is another place than on it."""
     if not request.contained:
         return
     seen = (p for each in source.observation.segments for p in each.prepositions)

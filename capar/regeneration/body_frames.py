@@ -61,7 +61,7 @@ def free_pose(
 ) -> RigidTransform:
     """Where a hand that was free at a frame is on the new body, beside a hold.
 
-    As far from ease as it was, or from where it takes the thing or lets it go, if it was nearer to
+    As far from ease as it was, or from where it takes the object or lets it go, if it was nearer to
     that: a recording may begin when the hand is about to arrive.
     """
     free, holding = (source.hands[side].path[frame] for frame in frames)

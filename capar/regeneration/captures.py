@@ -184,7 +184,7 @@ class Completion:
     other hand's mirror image."""
 
     sizes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """Other lengths along x and y of things whose size the capture only assumes [m]."""
+    """Other lengths along x and y of objects whose size the capture only assumes [m]."""
 
     axes: Mapping[str, HandAxes] = field(default_factory=dict)
     """Which way the hands with a sensor point and face in its frame, by side."""
@@ -221,7 +221,7 @@ def read_completion(path: Path) -> Completion:
 
     ``from_s`` and ``to_s``; ``[performer]`` with ``kind``, ``stature_m``, ``place``,
     ``heading_deg`` and ``floor_m``; ``[mirrored]`` with ``left_hand = "OBJECT"``;
-    ``[assumed_size]`` with ``OBJECT = [X, Y]`` of things whose size is assumed in the capture [m];
+    ``[assumed_size]`` with ``OBJECT = [X, Y]`` of objects whose size is assumed in the capture [m];
     ``[hand.right]`` and ``[hand.left]`` with ``fingers`` and ``palm``, directions [X, Y, Z] in the
     frame of the hand's sensor.
 
@@ -336,7 +336,7 @@ def _head(capture: Capture, completion: Completion) -> Sensor:
 
 
 def _mirrored_hand(capture: Capture, hand: str, thing: str, heading_deg: float) -> Sensor:
-    """The other hand's mirror image in the middle plane of a thing, which moves with it."""
+    """The other hand's mirror image in the middle plane of an object, which moves with it."""
     side = hand.partition("_")[0]
     seen = OTHER.get(side, "")
     known = [s for s in capture.acting if s.end_effector == "hand" and s.side == seen]

@@ -21,13 +21,13 @@ NEAR_M = 0.08
 """Larger distances are not measured [m]."""
 
 HOLLOW = 0.98
-"""A thing that fills a smaller share of its hull is hollow [1]."""
+"""An object that fills a smaller share of its hull is hollow [1]."""
 
 DIFFERENCE_M = 1e-6
 """Step of a difference quotient of a distance [m]."""
 
 SAMPLES, SPACING_M = 4000, 0.008
-"""Points on the surface of a hollow thing, at least, and how far apart they are on a large one."""
+"""Points on the surface of a hollow object, at least, and how far apart they are on a large one."""
 
 
 @dataclass(frozen=True, order=True)
@@ -40,7 +40,7 @@ class Pair:
 
 
 class Surroundings:
-    """A body and the things of a scene, to be posed and measured."""
+    """A body and the objects of a scene, to be posed and measured."""
 
     def __init__(self, human: Human, scene: Scene) -> None:
         self.scene = scene
@@ -72,7 +72,7 @@ class Surroundings:
     def pose(
         self, posture: Float[np.ndarray, "posture"], things: Mapping[str, RigidTransform]
     ) -> None:
-        """Put the body and the things somewhere."""
+        """Put the body and the objects somewhere."""
         self.place(posture, {name: vectors(pose) for name, pose in things.items()})
 
     def place(
@@ -86,7 +86,7 @@ class Surroundings:
         mujoco.mj_kinematics(self.model, self.data)
 
     def near(self, parts: Iterable[str] | None = None) -> list[Pair]:
-        """Distances of parts of the body, or of all, from the things near them."""
+        """Distances of parts of the body, or of all, from the objects near them."""
         out = []
         for geom, name in self.pairs(parts):
             found = self.gap(geom, name)
@@ -95,7 +95,7 @@ class Surroundings:
         return out
 
     def pairs(self, parts: Iterable[str] | None = None) -> list[tuple[int, str]]:
-        """Shapes of parts of the body, or of all, each with a thing that stops it."""
+        """Shapes of parts of the body, or of all, each with an object that stops it."""
         wanted = None if parts is None else set(parts)
         return [
             (geom, name)
@@ -106,7 +106,7 @@ class Surroundings:
         ]
 
     def gap(self, geom: int, name: str, most_m: float = NEAR_M) -> float:
-        """How far a shape of the body is from a thing; larger distances are not measured [m]."""
+        """How far a shape of the body is from an object; larger distances are not measured [m]."""
         found = self._distance(geom, self.geoms[name])
         if not self._in_hull(found, name):
             return found
@@ -128,7 +128,7 @@ class Surroundings:
         return distance_m < 0.0 and self.hollow[name] is not None
 
     def things_near(self) -> list[Pair]:
-        """Distances between things near each other, but for what is on a hinge or a rail of one."""
+        """Distances between objects near each other, but for what is on a hinge or a rail of one."""
         names = sorted(self.geoms)
         out = []
         for number, first in enumerate(names):
@@ -149,14 +149,14 @@ class Surroundings:
         return float(mujoco.mj_geomDistance(self.model, self.data, first, second, NEAR_M, None))
 
     def _apart(self, geom: int, name: str, most_m: float) -> float:
-        """How far the surface of a hollow thing is from a part, negative where it is inside [m]."""
+        """How far the surface of a hollow object is from a part, negative where it is inside [m]."""
         points = self._surface(geom, name, most_m)
         return float(_depths(points, self.model, geom).min()) if len(points) else most_m
 
     def _nearest(
         self, geom: int, name: str
     ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
-        """The point of a hollow thing's surface next to a part, and the way out to it [m, 1]."""
+        """The point of a hollow object's surface next to a part, and the way out to it [m, 1]."""
         local = self._surface(geom, name, NEAR_M)
         point = local[int(_depths(local, self.model, geom).argmin())]
         steps = point + DIFFERENCE_M * np.concatenate([np.eye(3), -np.eye(3)])
@@ -165,7 +165,7 @@ class Surroundings:
         return turn @ point + self.data.geom_xpos[geom], turn @ (ahead - back)
 
     def _surface(self, geom: int, name: str, most_m: float) -> Float[np.ndarray, "points 3"]:
-        """Points on a hollow thing's surface near a part, in the frame of the part's shape [m]."""
+        """Points on a hollow object's surface near a part, in the frame of the part's shape [m]."""
         tree = self.hollow[name]
         assert tree is not None
         mocap = self.bodies[name]
@@ -177,7 +177,7 @@ class Surroundings:
 
 
 def things_apart(scene: Scene, names: tuple[str, str], human: Human) -> float:
-    """The distance between two things as they stand, no more than ``NEAR_M`` [m]."""
+    """The distance between two objects as they stand, no more than ``NEAR_M`` [m]."""
     around = Surroundings(human, scene)
     around.pose(human.posture(), {name: thing.pose for name, thing in scene.things.items()})
     found = (pair for pair in around.things_near() if {pair.part, pair.thing} == set(names))
@@ -185,7 +185,7 @@ def things_apart(scene: Scene, names: tuple[str, str], human: Human) -> float:
 
 
 def inner_gap(hollow: Shape, thing: Shape, seat: RigidTransform) -> float | None:
-    """How far a thing is from the surface of a hollow one, negative where they cut [m].
+    """How far an object is from the surface of a hollow one, negative where they cut [m].
 
     Returns:
         None where the first shape is not hollow.
@@ -244,7 +244,7 @@ def _add_thing(spec: mujoco.MjSpec, name: str, vertices: Float[np.ndarray, "vert
 
 
 CLEAR_M = 0.001
-"""How far the surface of a limb is kept from that of a thing [m]."""
+"""How far the surface of a limb is kept from that of an object [m]."""
 
 HEAD = ("head", "right_eye", "left_eye")
 HEAD_CLEAR_M = 0.015
@@ -255,13 +255,13 @@ CLEAR_COST = 100.0
 
 
 class ClearTask(mink.Task):
-    """Pushes every part of the body but the hands, which have ways of their own, out of things.
+    """Pushes every part of the body but the hands, which have paths of their own, out of objects.
 
-    A part that is far enough from a thing adds nothing.
+    A part that is far enough from an object adds nothing.
     """
 
     def __init__(self, around: Surroundings, met: Collection[str] = ()) -> None:
-        """Watch all parts and things."""
+        """Watch all parts and objects."""
         self.around = around
         self.pairs = [
             (geom, name)
@@ -284,12 +284,12 @@ class ClearTask(mink.Task):
         self.slopes = np.zeros((len(self.pairs), self.around.model.nv))
 
     def place(self, things: Mapping[str, Float[np.ndarray, "7"]]) -> None:
-        """Take where things are from now on, as ``vectors`` has it; others stay."""
+        """Take where objects are from now on, as ``vectors`` has it; others stay."""
         self.things |= things
         self.measured = None
 
     def compute_error(self, configuration: mink.Configuration) -> Float[np.ndarray, "rows"]:
-        """How much nearer each part is to a thing than it may be, negative [m]."""
+        """How much nearer each part is to an object than it may be, negative [m]."""
         self._measure(configuration)
         short = np.minimum(self.gaps - self.clear_m, 0.0)
         return short if self.active else np.zeros(len(short))

@@ -34,7 +34,7 @@ def map_directly(source: Source, human: Human) -> tuple[Motion, Quality]:
 
 
 def mapped_plan(source: Source, human: Human) -> Plan:
-    """Where hands, things, head and gaze are at every frame by direct mapping."""
+    """Where hands, objects, head and gaze are at every frame by direct mapping."""
     scene = source.scene
     old, new = body_frames(source.human, scene), body_frames(human, scene)
     head = head_path(source, old, new)
@@ -68,7 +68,7 @@ def axis_mapped(
     """A path between other ends, axis by axis (thesis 3.4.2, eq. 3.3) [m].
 
     Along an axis on which the ends of the path are near each other the quotient of the equation
-    has no meaning: there the displacements of both ends are added, by the share of the way.
+    has no meaning: there the displacements of both ends are added, by the share of the path.
 
     Args:
         path: As it was recorded [m].
@@ -101,7 +101,7 @@ def _thing_path(
 
 
 def _between(source: Source, own: list[Meeting], name: str) -> list[tuple[int, int]]:
-    """Stretches in which a thing is on its way to the head or from it."""
+    """Intervals in which an object is on its way to the head or from it."""
     out = []
     for hold in source.holds:
         met = [m for m in own if hold.first <= m.first <= hold.last]
@@ -147,7 +147,7 @@ def _rest(
 
 
 def _goals(source: Source, things: Mapping[str, RigidTransform], name: str) -> list[Goal]:
-    """Where a thing is at each event, for the gates."""
+    """Where an object is at each event, for the gates."""
     spans: list[Hold | Meeting] = [*source.holds, *source.meetings]
     own = [span for span in spans if span.thing == name]
     frames = sorted({frame for span in own for frame in (span.first, span.last)})
@@ -155,7 +155,7 @@ def _goals(source: Source, things: Mapping[str, RigidTransform], name: str) -> l
 
 
 def _grip(source: Source, hold: Hold) -> Grip:
-    """How the recorded hand lay on the thing, in the median of the hold."""
+    """How the recorded hand lay on the object, in the median of the hold."""
     part = slice(hold.first, hold.last + 1)
     poses = source.paths[hold.thing][part].inv() * source.hands[hold.side].path[part]
     spot = np.median(poses.translation, axis=0)
@@ -164,7 +164,7 @@ def _grip(source: Source, hold: Hold) -> Grip:
 
 
 def departures(motion: Motion) -> tuple[Measure, ...]:
-    """The largest distance of each hand and each moved thing from its recorded place [mm].
+    """The largest distance of each hand and each moved object from its recorded place [mm].
 
     The capture's own poses are compared, hands by the frame along the axes of their hulls. In
     the recorded scene they say how exactly the recorded body does again what it did.

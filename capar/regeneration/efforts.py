@@ -14,7 +14,7 @@ from scipy.spatial.transform import RigidTransform, Rotation, Slerp
 from capar.body.human import Human
 from capar.model.errors import CaparError, UnknownNameError
 from capar.regeneration.body_frames import body_frames
-from capar.regeneration.goals import thing_goals
+from capar.regeneration.goals import object_goals
 from capar.regeneration.motion import Motion
 from capar.regeneration.quality import Quality, failures
 from capar.regeneration.scenes import PlanError, Scene
@@ -131,7 +131,7 @@ def effort_of_words(words: Iterable[str]) -> Effort | None:
 
 
 def told_of_words(words: Iterable[str], *, stated: bool) -> list[str]:
-    """What is told of the effect of some words."""
+    """What is reported of the effect of some words."""
     out = []
     for word in words:
         if word not in adverbs():
@@ -150,22 +150,22 @@ SKEW = 1.5
 """Weight tilts the speeds by this power of e from the first frame to the last one [1]."""
 
 PAUSE = 0.12
-"""Bound flow pauses for so long at an end of a stretch [1, of its time]."""
+"""Bound flow pauses for so long at an end of a interval [1, of its time]."""
 
 OVERSHOOT, SETTLES = 0.08, 0.3
-"""Free flow goes so far beyond a free end [1, of the way] and needs so long for it [1, of time]."""
+"""Free flow goes so far beyond a free end [1, of the path] and needs so long for it [1, of time]."""
 
 BULGE, LIFT = 0.15, 0.08
-"""Indirect space leads so far aside, light weight so high half-way [1, of the straight way]."""
+"""Indirect space leads so far aside, light weight so high half-way [1, of the straight path]."""
 
 WIDER = 0.5
-"""Indirect space enlarges by so much what deviates from the straight way already [1]."""
+"""Indirect space enlarges by so much what deviates from the straight path already [1]."""
 
 
 def timed(
     shares: Float[np.ndarray, "frames"], time: float, weight: float
 ) -> Float[np.ndarray, "frames"]:
-    """Shares of the way, from 0 to 1, with the speeds of another effort.
+    """Shares of the path, from 0 to 1, with the speeds of another effort.
 
     Speeds are raised to the power 2^time, so that the highest over the mean grows with time
     (sudden), and tilted by exp(SKEW * weight) towards the end, so that weight (strong) goes on
@@ -183,7 +183,7 @@ def timed(
 def paused(
     shares: Float[np.ndarray, "frames"], flow: float, ends: tuple[bool, bool]
 ) -> Float[np.ndarray, "frames"]:
-    """Shares of the way with the pauses of bound flow."""
+    """Shares of the path with the pauses of bound flow."""
     before, after = (PAUSE * max(flow, 0.0) * may for may in ends)
     time = np.linspace(0.0, 1.0, len(shares))
     inner = np.clip((time - before) / (1.0 - before - after), 0.0, 1.0)
@@ -191,10 +191,10 @@ def paused(
 
 
 def overshot(frames: int, flow: float) -> tuple[Float[np.ndarray, "frames"], ...]:
-    """When the way is gone, and what is gone beyond its end, with free flow.
+    """When the path is gone, and what is gone beyond its end, with free flow.
 
     Returns:
-        The share of the recorded time at each frame, and the added share of the way.
+        The share of the recorded time at each frame, and the added share of the path.
     """
     free = max(-flow, 0.0)
     time = np.linspace(0.0, 1.0, frames)
@@ -210,14 +210,14 @@ def shaped(
     weight: float,
     free: Float[np.ndarray, "frames"],
 ) -> Float[np.ndarray, "frames 3"]:
-    """A way between the same ends, more or less direct, higher or lower.
+    """A path between the same ends, more or less direct, higher or lower.
 
     Direct space takes what deviates from the straight way out of it. Indirect space enlarges that
-    and bulges aside: to the side on which the way becomes longer, so that, a length being convex
+    and bulges aside: to the side on which the path becomes longer, so that, a length being convex
     in what is added, more indirect is never shorter.
 
     Args:
-        spots: The way [m].
+        spots: The path [m].
         space: From indirect to direct.
         weight: From light to strong.
         free: How far each frame may be moved [1].
@@ -241,35 +241,35 @@ def shaped(
 
 
 def _sideways(chord: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
-    """Level and across a way; to the left of x where that goes straight up."""
+    """Level and across a path; to the left of x where that goes straight up."""
     across = np.array([-chord[1], chord[0], 0.0])
     size = float(np.linalg.norm(across))
     return np.asarray(across / size) if size > 1e-9 else np.array([0.0, 1.0, 0.0])
 
 
 def _lengthens(spots: Float[np.ndarray, "frames 3"], added: Float[np.ndarray, "frames 3"]) -> float:
-    """How fast a way becomes longer as something is added to it [m]."""
+    """How fast a path becomes longer as something is added to it [m]."""
     steps, more = np.diff(spots, axis=0), np.diff(added, axis=0)
     sizes = np.maximum(np.linalg.norm(steps, axis=1), 1e-12)
     return float(np.sum(np.einsum("ij,ij->i", steps, more) / sizes))
 
 
 ARM_M = 0.1
-"""A turn of one radian counts as so long a way [m]."""
+"""A turn of one radian counts as so long a path [m]."""
 
 SLOWLY = 0.1
-"""Where a hand is slower than this share of its highest speed a step's border parts its way [1]."""
+"""Where a hand is slower than this share of its highest speed a step's border parts its path [1]."""
 
 OFF_M = 0.05
-"""A thing that is so far above where it is taken and put down may go another way [m]."""
+"""An object that is so far above where it is taken and put down may go another way [m]."""
 
 ROUND_S = 0.15
-"""Free flow rounds the way over so long on both sides of a border between steps [s]."""
+"""Free flow rounds the path over so long on both sides of a border between steps [s]."""
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a way between two events, or between slow borders of steps."""
+    """A part of a path between two events, or between slow borders of steps."""
 
     first: int
     last: int
@@ -283,8 +283,8 @@ class Stretch:
 def with_effort(style: Style, source: Source, effort: Effort) -> Style:
     """The style with another effort; events keep their frames and places.
 
-    Between events the speeds along each way are reshaped by time, weight and bound flow, and the
-    shape of ways in free air by space, weight and free flow. How long everything takes is not
+    Between events the speeds along each path are reshaped by time, weight and bound flow, and the
+    shape of paths in free air by space, weight and free flow. How long everything takes is not
     changed here.
     """
     hands, things = dict(style.hands), dict(style.things)
@@ -296,7 +296,7 @@ def with_effort(style: Style, source: Source, effort: Effort) -> Style:
             rounded = _replaced(rounded, stretch.first, _reshaped(part, stretch, effort))
         hands[side] = rounded
     recorded = body_frames(source.human, source.scene)
-    for name, goals in thing_goals(source, source.scene, recorded, recorded).items():
+    for name, goals in object_goals(source, source.scene, recorded, recorded).items():
         frames = sorted({goal.frame for goal in goals})
         free = _off_ground(style.things[name], frames[0], frames[-1])
         path = _rounded(style.things[name], source, frames, effort.flow)
@@ -319,7 +319,7 @@ def hand_edges(source: Source, side: str) -> list[int]:
 
 
 def hand_stretches(source: Source, side: str) -> Iterator[Stretch]:
-    """The stretches in which a hand holds nothing, in order."""
+    """The intervals in which a hand holds nothing, in order."""
     holds = [hold for hold in source.holds if hold.side == side]
     firsts, lasts = {hold.first for hold in holds}, {hold.last for hold in holds}
     edges = sorted({*hand_edges(source, side), *_borders(source, side)})
@@ -340,7 +340,7 @@ def _borders(source: Source, side: str) -> list[int]:
 
 
 def turned_way(path: RigidTransform) -> Float[np.ndarray, "frames"]:
-    """Length of a way up to each frame, turning included [m], strictly increasing."""
+    """Length of a path up to each frame, turning included [m], strictly increasing."""
     gone = np.linalg.norm(np.diff(path.translation, axis=0), axis=1)
     turned = (path[1:].rotation * path[:-1].rotation.inv()).magnitude()
     return np.concatenate([[0.0], np.cumsum(np.hypot(gone, ARM_M * turned) + 1e-9)])
@@ -352,7 +352,7 @@ def _reshaped(
     effort: Effort,
     free: Float[np.ndarray, "frames"] | None = None,
 ) -> RigidTransform:
-    """A stretch with another effort; as it is where it is too short to have one."""
+    """A interval with another effort; as it is where it is too short to have one."""
     length = turned_way(path)
     if length[-1] < SHORT_M or len(path) < 4:
         return path
@@ -379,7 +379,7 @@ def _reshaped(
 def _rounded(
     path: RigidTransform, source: Source, pinned: Collection[int], flow: float
 ) -> RigidTransform:
-    """A way that flows through the borders between steps where nothing has to be anywhere."""
+    """A path that flows through the borders between steps where nothing has to be anywhere."""
     half = round(ROUND_S * source.rate_hz * max(-flow, 0.0))
     if half < 1 or len(path) < 4:
         return path
@@ -397,7 +397,7 @@ def _rounded(
 
 
 def _off_ground(path: RigidTransform, first: int, last: int) -> Float[np.ndarray, "frames"]:
-    """How far a thing may go another way at each frame [1]: not while it is on what bears it."""
+    """How far an object may go another way at each frame [1]: not while it is on what bears it."""
     heights = path.translation[:, 2]
     rise = np.clip((heights - max(heights[first], heights[last])) / OFF_M - 0.2, 0.0, 1.0)
     return np.asarray(rise**2 * (3.0 - 2.0 * rise))
@@ -485,8 +485,8 @@ def check_effort(source: Source, style: Style, effort: Effort) -> None:
     Raises:
         PlanError: It cannot; the message says what would do.
     """
-    set_going = [(launch.frame, launch.thing) for launch in source.launches]
-    set_going += [(toss.first, toss.thing) for toss in source.tosses]
+    set_going = [(launch.frame, launch.thing) for launch in source.releases]
+    set_going += [(toss.first, toss.thing) for toss in source.throws]
     if set_going:
         frame, thing = min(set_going)
         raise PlanError(

@@ -12,7 +12,7 @@ from capar.body.human import Human
 from capar.model.capture import TagType
 from capar.model.errors import UnknownNameError
 from capar.model.facts import Displaced
-from capar.regeneration.holds import Launch, Toss
+from capar.regeneration.holds import Release, Throw
 from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.sources import Source
 from extractors.forces.forces import VELOCITY_S, velocity_at
@@ -23,10 +23,10 @@ class ForceKind(StrEnum):
     """What is the same on another body."""
 
     SIMILAR = "similar"
-    """The force, in proportion to the arm and its speed; the thing goes as far as that takes it."""
+    """The force, in proportion to the arm and its speed; the object goes as far as that takes it."""
 
     SAME = "same"
-    """The thing's motion; the hand strikes as fast as that takes."""
+    """The object's motion; the hand strikes as fast as that takes."""
 
 
 def force_kind(name: str) -> ForceKind:
@@ -47,22 +47,22 @@ SHARE = 0.98
 """The largest share of a blow's momentum that a striker keeps for its own mass [1]."""
 
 SLOWEST, FASTEST = 0.2, 2.5
-"""How many times as fast a hand may be led into a blow as its own way has it [1]."""
+"""How many times as fast a hand may be led into a blow as its own path has it [1]."""
 
 DAMPING, BOUNCE = (2.0, 2.0), 0.4
-"""Of a thing that was not seen to slide, or to bounce [1/s], [1]."""
+"""Of an object that was not seen to slide, or to bounce [1/s], [1]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Flight:
-    """A thing's motion on its own, from a frame on."""
+    """An object's motion on its own, from a frame on."""
 
-    launch: Launch
+    launch: Release
     velocity: Float[np.ndarray, "3"]
     """With which it begins [m/s]."""
 
     hand_mps: float
-    """The hand's speed just before, along the line of impact or the thing's way [m/s]."""
+    """The hand's speed just before, along the line of impact or the object's path [m/s]."""
 
     motion: FreeMotion
 
@@ -70,9 +70,9 @@ class Flight:
 def first_guess(
     source: Source, scene: Scene, things: Mapping[str, RigidTransform]
 ) -> dict[str, RigidTransform]:
-    """The ways of things if each were set going as in the recording."""
+    """The paths of objects if each were set going as in the recording."""
     out = dict(things)
-    for launch in source.launches:
+    for launch in source.releases:
         velocity = _turned(scene.heading - source.scene.heading, launch.force.velocity_mps)
         motion = _motion(source, scene, launch, out[launch.thing], velocity)
         out[launch.thing] = _with(source, scene, launch, out[launch.thing], motion)
@@ -87,18 +87,18 @@ def flights(
     hands: Mapping[str, RigidTransform],
     kind: ForceKind,
 ) -> tuple[dict[str, RigidTransform], dict[str, RigidTransform], list[Flight]]:
-    """Ways of things and of hands, with the motion that each launch gives.
+    """Paths of objects and of hands, with the motion that each launch gives.
 
-    By eq. 3.5 and the conservation of momentum a thing at rest gets (1 + e) q / (1 + q) of the
-    striker's speed, q being the striker's mass over the thing's. The recorded speeds give q, which
-    the masses of both arms and the thing's size carry over. A thing that is let go has the speed
+    By eq. 3.5 and the conservation of momentum an object at rest gets (1 + e) q / (1 + q) of the
+    striker's speed, q being the striker's mass over the object's. The recorded speeds give q, which
+    the masses of both arms and the object's size carry over. An object that is let go has the speed
     of the hand, in the recorded proportion.
 
     Raises:
         PlanError: The hand would have to strike faster than it can.
     """
     ways, paths, out = dict(things), dict(hands), []
-    for launch in source.launches:
+    for launch in source.releases:
         force, turn = launch.force, scene.heading - source.scene.heading
         recorded = np.array(force.velocity_mps)
         speed = float(np.linalg.norm(recorded))
@@ -140,7 +140,7 @@ def arm_mass(human: Human, side: str) -> float:
 
 
 def surfaces_of(scene: Scene) -> list[Surface]:
-    """What bears things in a scene: level tops of fixed things, and the floor."""
+    """What bears objects in a scene: level tops of fixed objects, and the floor."""
     out = []
     for thing in scene.things.values():
         if thing.tag is TagType.FIXED:
@@ -154,11 +154,11 @@ def _share(
     source: Source,
     scene: Scene,
     humans: tuple[Human, Human],
-    launch: Launch,
+    launch: Release,
     old: float,
     speed: float,
 ) -> float:
-    """The thing's speed over the hand's [1]."""
+    """The object's speed over the hand's [1]."""
     force = launch.force
     if old <= 0.0:
         return 1.0
@@ -193,11 +193,11 @@ def _turned(angle: float, vector: tuple[float, float, float] | np.ndarray) -> np
 def _motion(
     source: Source,
     scene: Scene,
-    launch: Launch,
+    launch: Release,
     path: RigidTransform,
     velocity: Float[np.ndarray, "3"],
 ) -> FreeMotion:
-    """The thing's middle from the launch to the end."""
+    """The object's middle from the launch to the end."""
     thing, pose = scene.thing(launch.thing), path[launch.frame]
     force = launch.force
     corners = pose.rotation.apply(np.array(thing.shape.vertices))
@@ -214,9 +214,9 @@ def _motion(
 
 
 def _with(
-    source: Source, scene: Scene, launch: Launch, path: RigidTransform, motion: FreeMotion
+    source: Source, scene: Scene, launch: Release, path: RigidTransform, motion: FreeMotion
 ) -> RigidTransform:
-    """A thing's way that goes on alone from the launch."""
+    """An object's path that goes on alone from the launch."""
     turn = path.rotation[launch.frame]
     middle = turn.apply(scene.thing(launch.thing).shape.bounds.mean(axis=0))
     spots = path.translation.copy()
@@ -227,9 +227,9 @@ def _with(
 
 
 def _faster(
-    source: Source, launch: Launch, hand: RigidTransform, needed: float, own: float
+    source: Source, launch: Release, hand: RigidTransform, needed: float, own: float
 ) -> RigidTransform:
-    """A hand's way that comes to the blow with the needed speed, on the same places."""
+    """A hand's path that comes to the blow with the needed speed, on the same places."""
     factor = needed / own if own > 0.0 else np.inf
     if not SLOWEST <= factor <= FASTEST:
         raise PlanError(
@@ -254,12 +254,12 @@ FALLS = np.array([0.0, 0.0, -GRAVITY_MPS2])
 """Acceleration in flight [m/s^2]."""
 
 SWING_S = 0.4
-"""Over so long at most a hand's own way is changed to throw, and to catch, as the flight asks."""
+"""Over so long at most a hand's own path is changed to throw, and to catch, as the flight asks."""
 
 
 @dataclass(frozen=True)
 class FlightFaults:
-    """What of a flight no thrown thing would do."""
+    """What of a flight no thrown object would do."""
 
     off_m: tuple[float, int]
     """Distance from the parabola of gravity, at worst [m], and the frame."""
@@ -269,9 +269,9 @@ class FlightFaults:
 
 
 def caught_pose(
-    source: Source, scene: Scene, toss: Toss, released: RigidTransform, ratio: float
+    source: Source, scene: Scene, toss: Throw, released: RigidTransform, ratio: float
 ) -> RigidTransform:
-    """Where a thing is caught that was let go somewhere.
+    """Where an object is caught that was let go somewhere.
 
     As far away level as it was times a ratio, and as much higher in metres as it was, so that the
     recorded time of flight gives the velocity.
@@ -292,13 +292,13 @@ def caught_pose(
     return RigidTransform.from_components(spot, spun)
 
 
-def with_tosses(source: Source, scene: Scene, name: str, path: RigidTransform) -> RigidTransform:
-    """The way of a thing with its flights, and hands' swings that have the flights' velocities.
+def with_throws(source: Source, scene: Scene, name: str, path: RigidTransform) -> RigidTransform:
+    """The path of an object with its flights, and hands' swings that have the flights' velocities.
 
-    A swing is changed by (u^3 - u^2) T dv before the thing is let go, and by u (1 - u)^2 T dv after
+    A swing is changed by (u^3 - u^2) T dv before the object is let go, and by u (1 - u)^2 T dv after
     it is caught, so that it keeps its ends and its other velocity.
     """
-    own = [toss for toss in source.tosses if toss.thing == name]
+    own = [toss for toss in source.throws if toss.thing == name]
     if not own:
         return path
     local, times = _middle(scene, name), source.times
@@ -312,7 +312,7 @@ def with_tosses(source: Source, scene: Scene, name: str, path: RigidTransform) -
         swing, stop = slice(first, toss.first + 1), slice(toss.last, last + 1)
         before = start - end_velocity(times[swing], spots[swing])
         after = end + end_velocity(-times[stop][::-1], spots[stop][::-1])
-        # The way after, from its end and with its times reversed, has the opposite velocity.
+        # The path after, from its end and with its times reversed, has the opposite velocity.
         spots[swing] += np.outer(_arriving(times[swing]), before)
         spots[stop] += np.outer(-_arriving(-times[stop][::-1])[::-1], after)
         past = times[part] - times[toss.first]
@@ -324,7 +324,7 @@ def with_tosses(source: Source, scene: Scene, name: str, path: RigidTransform) -
 def flight_faults(
     times: Float[np.ndarray, "frames"], spots: Float[np.ndarray, "frames 3"]
 ) -> FlightFaults:
-    """What of a flight from hand to hand no thrown thing would do.
+    """What of a flight from hand to hand no thrown object would do.
 
     Args:
         times: From when it is let go to when it is caught [s].
@@ -378,8 +378,8 @@ def _arriving(times: Float[np.ndarray, "frames"]) -> Float[np.ndarray, "frames"]
     return np.asarray((u**3 - u**2) * lasts)
 
 
-def _swings(source: Source, toss: Toss) -> tuple[int, int]:
-    """The frames from which the throwing hand swings, and to which the catching one gives way."""
+def _swings(source: Source, toss: Throw) -> tuple[int, int]:
+    """The frames from which the throwing hand swings, and to which the catching one gives path."""
     frames = round(SWING_S * source.rate_hz)
     first, last = toss.first - frames, toss.last + frames
     for fact in source.observation.facts:
@@ -389,7 +389,7 @@ def _swings(source: Source, toss: Toss) -> tuple[int, int]:
             if fact.first <= toss.last < fact.last:
                 last = min(last, fact.last)
     for hold in source.carried:
-        if isinstance(hold, Toss) or hold.thing != toss.thing:
+        if isinstance(hold, Throw) or hold.thing != toss.thing:
             continue
         if hold.last == toss.first:
             first = max(first, hold.first)
@@ -399,17 +399,17 @@ def _swings(source: Source, toss: Toss) -> tuple[int, int]:
 
 
 def _middle(scene: Scene, name: str) -> Float[np.ndarray, "3"]:
-    """Of a thing, in its frame [m]: it is taken to be the centre of mass."""
+    """Of an object, in its frame [m]: it is taken to be the centre of mass."""
     return np.asarray(scene.thing(name).shape.bounds.mean(axis=0))
 
 
 def _turn(source: Source, scene: Scene) -> Rotation:
-    """How far the scene's way is turned."""
+    """How far the new scene faces another way."""
     return Rotation.from_euler("z", scene.heading - source.scene.heading)
 
 
-def _spun(source: Source, scene: Scene, toss: Toss, released: Rotation) -> Rotation:
-    """How a thing is turned from when it is let go to when it is caught: it spins as it did."""
+def _spun(source: Source, scene: Scene, toss: Throw, released: Rotation) -> Rotation:
+    """How an object is turned from when it is let go to when it is caught: it spins as it did."""
     turn, recorded = _turn(source, scene), source.paths[toss.thing].rotation
     part = recorded[toss.first : toss.last + 1]
     return turn * part * part[0].inv() * turn.inv() * released

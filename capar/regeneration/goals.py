@@ -14,10 +14,10 @@ from capar.model.locations import restored
 from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.forces import ForceKind, caught_pose
-from capar.regeneration.holds import Companion, Toss
+from capar.regeneration.holds import CoHeld, Throw
 from capar.regeneration.scenes import PlanError, Scene, moved
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import MOVES_M, Meeting, Poise, Source, contact_points, moves
+from capar.regeneration.sources import MOVES_M, Leaning, Meeting, Source, contact_points, moves
 
 HINGE, RAIL, PLANE = "hinge", "rail", "plane"
 
@@ -28,12 +28,12 @@ FLAT_RAD = float(np.radians(3.0))
 """Nor leans by more than this [rad]."""
 
 NOISE_M = 0.0002
-"""A recorded way that is no farther off the plane is kept as it is [m]."""
+"""A recorded path that is no farther off the plane is kept as it is [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Constraint:
-    """The line or plane that a thing keeps to, in the frame of the thing at its start."""
+    """The line or plane that an object keeps to, in the frame of the object at its start."""
 
     kind: str
     """``hinge``, ``rail`` or ``plane``."""
@@ -49,7 +49,7 @@ class Constraint:
     """Unit direction of the line, or normal of the plane."""
 
     def scaled(self, ratio: Float[np.ndarray, "3"]) -> "Constraint":
-        """On a thing of another size: the same place in its own measures.
+        """On an object of another size: the same place in its own measures.
 
         Args:
             ratio: The new size over the old one, axis by axis [1].
@@ -62,11 +62,11 @@ class Constraint:
         at: Float[np.ndarray, "3"],
         spots: Float[np.ndarray, "frames 3"],
     ) -> Float[np.ndarray, "frames"]:
-        """How far a point of the thing, or on it, is from the way that the constraint leaves [m].
+        """How far a point of the object, or on it, is from the path that the constraint leaves [m].
 
         Args:
-            start: Where the thing is at its start.
-            at: The point in the thing's frame [m].
+            start: Where the object is at its start.
+            at: The point in the object's frame [m].
             spots: Where it was seen in the world [m].
         """
         point, axis = start.apply(self.point), start.rotation.apply(self.axis)
@@ -83,7 +83,7 @@ class Constraint:
 
 
 def constraints_of(source: Source) -> dict[str, Constraint]:
-    """The hinge or rail of each thing that was observed on one, by the thing's name."""
+    """The hinge or rail of each object that was observed on one, by the object's name."""
     out = {}
     for guide in source.observation.guides:
         if guide.object in source.paths:
@@ -99,12 +99,12 @@ def constraints_of(source: Source) -> dict[str, Constraint]:
 
 
 def planes_of(source: Source) -> dict[str, Constraint]:
-    """The plane of each thing that stays level on what bears it while it is held and moves."""
+    """The plane of each object that stays level on what bears it while it is held and moves."""
     out, guided = {}, constraints_of(source)
     for name, path in source.paths.items():
         spans = [(hold.first, hold.last) for hold in source.holds if hold.thing == name]
         support = source.scene.support(name)
-        launched = any(launch.thing == name for launch in source.launches)
+        launched = any(launch.thing == name for launch in source.releases)
         if not spans or not support or name in guided or launched:
             continue
         part = path[min(first for first, _ in spans) : max(last for _, last in spans) + 1]
@@ -118,7 +118,7 @@ def planes_of(source: Source) -> dict[str, Constraint]:
 
 
 def scene_constraints(source: Source, scene: Scene) -> dict[str, Constraint]:
-    """Every constraint in the measures of the things of a scene."""
+    """Every constraint in the measures of the objects of a scene."""
     found = {**planes_of(source), **constraints_of(source)}
     return {
         name: constraint.scaled(_ratio(source, scene, name)) for name, constraint in found.items()
@@ -132,7 +132,7 @@ def guided_poses(
     recorded: RigidTransform,
     spans: list[tuple[int, int]],
 ) -> RigidTransform:
-    """``T_world_thing`` at every frame of a thing on a hinge or a rail, on its own line throughout.
+    """``T_world_thing`` at every frame of an object on a hinge or a rail, on its own line throughout.
 
     It turns by the recorded angles, or goes as far in its own measures; while nobody holds it, it
     stays.
@@ -155,7 +155,7 @@ def guided_poses(
 
 
 def flattened(path: RigidTransform) -> RigidTransform:
-    """A way in the level plane of its first frame, turning only about the vertical."""
+    """A path in the level plane of its first frame, turning only about the vertical."""
     spots = np.array(path.translation)
     if np.abs(spots[:, 2] - spots[0, 2]).max() <= NOISE_M:
         return path
@@ -167,7 +167,7 @@ def flattened(path: RigidTransform) -> RigidTransform:
 
 
 def _course(line: Constraint, path: RigidTransform) -> Float[np.ndarray, "frames"]:
-    """How far a thing has turned [rad] or gone [m] along its line since the first frame."""
+    """How far an object has turned [rad] or gone [m] along its line since the first frame."""
     moved = path[0].inv() * path
     if line.kind == RAIL:
         return np.asarray(moved.translation @ line.axis)
@@ -175,7 +175,7 @@ def _course(line: Constraint, path: RigidTransform) -> Float[np.ndarray, "frames
 
 
 def _upright(source: Source, name: str) -> Rotation:
-    """What takes directions of the captured object's frame to the frame of the thing."""
+    """What takes directions of the captured object's frame to the frame of the object."""
     stream = source.capture.tag_object(name).stream
     known = ~np.isnan(stream.positions).any(axis=1)
     captured = rotations(stream.orientations[known])
@@ -188,7 +188,7 @@ def _ratio(source: Source, scene: Scene, name: str) -> Float[np.ndarray, "3"]:
 
 
 STILL_M, STILL_RAD = 0.005, float(np.radians(5.0))
-"""A stretch in which a thing stays so near where it was is one of rest [m, rad]."""
+"""A interval in which an object stays so near where it was is one of rest [m, rad]."""
 
 TOUCH_M = 0.0005
 """What is left between surfaces that touch [m]."""
@@ -197,12 +197,12 @@ STEP_M = 0.005
 """Steps in which the nearest place is sought where it touches [m]."""
 
 SEARCH_M = 0.03
-"""How far a thing is moved at most so that it touches [m]."""
+"""How far an object is moved at most so that it touches [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Goal:
-    """Where a thing has to be at an event, and what decides that."""
+    """Where an object has to be at an event, and what decides that."""
 
     thing: str
     frame: int
@@ -210,21 +210,21 @@ class Goal:
     reason: str
 
 
-def thing_goals(
+def object_goals(
     source: Source,
     scene: Scene,
     old: BodyFrames,
     new: BodyFrames,
     force: ForceKind = ForceKind.SIMILAR,
 ) -> dict[str, list[Goal]]:
-    """The goals of every thing that is held, in order of time.
+    """The goals of every object that is held, in order of time.
 
     Raises:
-        PlanError: A thing would be put down where nothing supports it.
+        PlanError: An object would be put down where nothing supports it.
     """
     out: dict[str, list[Goal]] = {}
     constraints = scene_constraints(source, scene)
-    beside = {companion.hold.thing for companion in source.companions}
+    beside = {companion.hold.thing for companion in source.co_held}
     for name in source.paths:
         kind = constraints[name].kind if name in constraints else ""
         if kind in {HINGE, RAIL}:
@@ -236,7 +236,7 @@ def thing_goals(
         for first, last in handled(source, name):
             goals = out.setdefault(name, [])
             pose = goals[-1].pose if goals else scene.thing(name).pose
-            came, thrown = toss_of(source, name, last=first), toss_of(source, name, first=last)
+            came, thrown = throw_of(source, name, last=first), throw_of(source, name, first=last)
             if came:
                 ratio = _flight_ratio(old, new, force)
                 as_far = caught_pose(source, scene, came, pose, 1.0)
@@ -255,7 +255,7 @@ def thing_goals(
             if kind == PLANE:
                 flat = flattened(RigidTransform.concatenate([pose, down.pose]))[1]
                 down = replace(down, pose=flat)
-            goals += _poised(source, scene, name, (first, last), (pose, down.pose))
+            goals += _leaning_goals(source, scene, name, (first, last), (pose, down.pose))
             goals.sort(key=lambda goal: goal.frame)
             if thrown:
                 goals.append(down)
@@ -263,7 +263,7 @@ def thing_goals(
             goals.append(replace(down, frame=_stopped(source, name, goals[-1].frame, last)))
             if goals[-1].frame < last:
                 goals.append(replace(down, reason="stays there"))
-    for companion in source.companions:
+    for companion in source.co_held:
         out.setdefault(companion.hold.thing, []).extend(_beside_goals(scene, companion, out))
     return out
 
@@ -271,7 +271,7 @@ def thing_goals(
 def _head_goals(
     source: Source, scene: Scene, old: BodyFrames, new: BodyFrames, held: tuple[str, int, int]
 ) -> Iterator[Goal]:
-    """Where a thing is at the head while it is held, which is stated from frame to frame."""
+    """Where an object is at the head while it is held, which is stated from frame to frame."""
     name, first, last = held
     for meeting in source.meetings:
         if meeting.thing == name and first <= meeting.first <= last:
@@ -280,10 +280,8 @@ def _head_goals(
                 yield Goal(name, frame, at, f"at the {meeting.part}, in its own measures")
 
 
-def _beside_goals(
-    scene: Scene, companion: Companion, known: Mapping[str, list[Goal]]
-) -> list[Goal]:
-    """The goals of what lies in a hand beside another thing, as that one has them."""
+def _beside_goals(scene: Scene, companion: CoHeld, known: Mapping[str, list[Goal]]) -> list[Goal]:
+    """The goals of what lies in a hand beside another object, as that one has them."""
     ride, name = companion.ride, companion.hold.thing
     seat = scene.thing(ride.bearer).pose.inv() * scene.thing(name).pose
     led = [goal for goal in known[ride.bearer] if ride.first <= goal.frame <= ride.last]
@@ -312,22 +310,22 @@ def put_down_poses(source: Source, scene: Scene) -> dict[str, RigidTransform]:
     for name in source.paths:
         start = 0
         for first, last in handled(source, name):
-            if not toss_of(source, name, last=first):
+            if not throw_of(source, name, last=first):
                 start = first
-            if not toss_of(source, name, first=last):
+            if not throw_of(source, name, first=last):
                 pose = out.get(name, scene.thing(name).pose)
                 out[name] = _put_down(source, scene, name, (start, last), pose).pose
     return out
 
 
-def toss_of(source: Source, name: str, *, first: int = -1, last: int = -1) -> Toss | None:
-    """The flight of a thing that begins, or ends, in a frame; None where none does."""
-    own = (toss for toss in source.tosses if toss.thing == name)
+def throw_of(source: Source, name: str, *, first: int = -1, last: int = -1) -> Throw | None:
+    """The flight of an object that begins, or ends, in a frame; None where none does."""
+    own = (toss for toss in source.throws if toss.thing == name)
     return next((toss for toss in own if first == toss.first or last == toss.last), None)
 
 
 def _flight_ratio(old: BodyFrames, new: BodyFrames, force: ForceKind) -> float:
-    """How many times as far as recorded a thing flies level from hand to hand [1]."""
+    """How many times as far as recorded an object flies level from hand to hand [1]."""
     statures = [body.human.measures["stature"] for body in (new, old)]
     return float(statures[0] / statures[1]) if force is ForceKind.SIMILAR else 1.0
 
@@ -335,14 +333,14 @@ def _flight_ratio(old: BodyFrames, new: BodyFrames, force: ForceKind) -> float:
 def _let_go(
     source: Source, scene: Scene, name: str, span: tuple[int, int], pose: RigidTransform
 ) -> Goal:
-    """Where a thing is thrown from: as far in metres from where the hand took it as it was."""
+    """Where an object is thrown from: as far in metres from where the hand took it as it was."""
     turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
     there = _displaced(source.paths[name], span, pose, turn)
     return Goal(name, span[1], there, "thrown there")
 
 
 def _guided_goals(source: Source, scene: Scene, name: str, kind: str) -> Iterator[Goal]:
-    """Where a thing on a hinge or a rail is when a hand takes it, stops it, and lets it go."""
+    """Where an object on a hinge or a rail is when a hand takes it, stops it, and lets it go."""
     spans = handled(source, name)
     poses = guided_poses(source, scene, name, source.paths[name], spans)
     for first, last in spans:
@@ -355,13 +353,13 @@ def _guided_goals(source: Source, scene: Scene, name: str, kind: str) -> Iterato
 
 
 def _stopped(source: Source, name: str, after: int, last: int) -> int:
-    """The frame at which a thing was seen to stop, after one and not later than another one."""
+    """The frame at which an object was seen to stop, after one and not later than another one."""
     own = (fact for fact in source.observation.facts if isinstance(fact, Displaced))
     return max((f.last for f in own if f.object == name and after < f.last <= last), default=last)
 
 
 def rests(part: RigidTransform, start: RigidTransform, goal: RigidTransform) -> bool:
-    """Whether a thing is to stay where it rested."""
+    """Whether an object is to stay where it rested."""
     apart = np.linalg.norm(part.translation - part.translation[0], axis=1)
     turned = (part.rotation * part.rotation[0].inv()).magnitude()
     near = np.linalg.norm(goal.translation - start.translation) < 1e-9
@@ -369,7 +367,7 @@ def rests(part: RigidTransform, start: RigidTransform, goal: RigidTransform) -> 
 
 
 def handled(source: Source, name: str) -> list[tuple[int, int]]:
-    """From when to when a thing is held without a break, if it moves at all."""
+    """From when to when an object is held without a break, if it moves at all."""
     if not moves(source.paths[name]):
         return []
     out: list[tuple[int, int]] = []
@@ -385,7 +383,7 @@ def handled(source: Source, name: str) -> list[tuple[int, int]]:
 def _put_down(
     source: Source, scene: Scene, name: str, span: tuple[int, int], pose: RigidTransform
 ) -> Goal:
-    """As far in metres from where it came from as it was; on another thing in that one's size."""
+    """As far in metres from where it came from as it was; on another object in that one's size."""
     before, after = (source.paths[name][each] for each in span)
     turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
     by = turn.apply(after.translation - before.translation)
@@ -408,22 +406,22 @@ def _put_down(
     return Goal(name, span[1], goal, reason)
 
 
-def _poised(
+def _leaning_goals(
     source: Source,
     scene: Scene,
     name: str,
     span: tuple[int, int],
     ends: tuple[RigidTransform, RigidTransform],
 ) -> list[Goal]:
-    """Where it leans over another thing, and how it comes there and away.
+    """Where it leans over another object, and how it comes there and away.
 
-    While it leans, its edge next to the other thing is as high above that one as it was, and
+    While it leans, its edge next to the other object is as high above that one as it was, and
     sideways in that one's measures. Meanwhile it moves as far in metres as it did.
     """
     turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
     recorded, reason = source.paths[name], "over {!r}, in its own measures"
     out: list[Goal] = []
-    for poise in source.poises:
+    for poise in source.leanings:
         if poise.thing != name or not span[0] <= poise.frames[0] <= span[1]:
             continue
         spun = _turned(recorded, span[0], poise.lowest, turn) * ends[0].rotation
@@ -440,9 +438,9 @@ def _poised(
 
 
 def _leant(
-    source: Source, scene: Scene, poise: Poise, spun: Rotation, turn: Rotation
+    source: Source, scene: Scene, poise: Leaning, spun: Rotation, turn: Rotation
 ) -> Float[np.ndarray, "3"]:
-    """Where a thing is when it leans over another one, turned like this."""
+    """Where an object is when it leans over another one, turned like this."""
     before, after = (each.thing(poise.thing) for each in (source.scene, scene))
     old, new = (_top(each.thing(poise.other)) for each in (source.scene, scene))
     corners = np.array(before.shape.vertices)
@@ -464,7 +462,7 @@ def _beside(
     source: Source,
     name: str,
     span: tuple[int, int],
-    poise: Poise,
+    poise: Leaning,
     ends: tuple[RigidTransform, RigidTransform],
     over: list[RigidTransform],
     turn: Rotation,
@@ -495,7 +493,7 @@ def _beside(
 def _displaced(
     path: RigidTransform, frames: tuple[int, int], pose: RigidTransform, turn: Rotation
 ) -> RigidTransform:
-    """Where a thing is at the second frame, when it has a pose at the first."""
+    """Where an object is at the second frame, when it has a pose at the first."""
     first, frame = frames
     gone = turn.apply(path[frame].translation - path[first].translation)
     spun = _turned(path, first, frame, turn) * pose.rotation
@@ -503,7 +501,7 @@ def _displaced(
 
 
 def _turned(path: RigidTransform, first: int, frame: int, turn: Rotation) -> Rotation:
-    """How a recorded thing has turned, in a scene that is turned itself."""
+    """How a recorded object has turned, in a scene that is turned itself."""
     return turn * path[frame].rotation * path[first].rotation.inv() * turn.inv()
 
 
@@ -521,7 +519,7 @@ def _on(
 
 
 def support_at(scene: Scene, name: str, pose: RigidTransform) -> str:
-    """What a thing would stand on at some pose; empty where nothing is beneath it."""
+    """What an object would stand on at some pose; empty where nothing is beneath it."""
     x, y, z = (float(each) for each in pose.translation)
     return moved(scene, name, (x, y, z), scene.thing(name).heading).support(name)
 
@@ -529,7 +527,7 @@ def support_at(scene: Scene, name: str, pose: RigidTransform) -> str:
 def _at_head(
     source: Source, scene: Scene, old: BodyFrames, new: BodyFrames, meeting: Meeting
 ) -> RigidTransform:
-    """Where a thing meets the new head: the same points touch, in the measures of both."""
+    """Where an object meets the new head: the same points touch, in the measures of both."""
     frame = (meeting.first + meeting.last) // 2
     eyes, thing = source.eyes[frame], source.paths[meeting.thing][frame]
     part = source.capture.tag_object(meeting.part)
@@ -565,7 +563,7 @@ def _touching(scene: Scene, new: BodyFrames, name: str, local: RigidTransform) -
 
 
 def touching_shift(apart: Callable[[float], float], most_m: float = SEARCH_M) -> float:
-    """The least way to move so that a distance becomes ``TOUCH_M`` [m].
+    """The least shift so that a distance becomes ``TOUCH_M`` [m].
 
     Args:
         apart: The distance after a move; moving on, away from the surface next to it.

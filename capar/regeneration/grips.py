@@ -1,4 +1,4 @@
-"""How the new hand lies on the new thing: the same points touch, turned as little as may be."""
+"""How the new hand lies on the new object: the same points touch, turned as little as may be."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -21,23 +21,23 @@ from capar.regeneration.solving import Solver
 from capar.regeneration.sources import Hold, Source, contact_points
 
 YAWS = (0.0, 0.2, -0.2, 0.4, -0.4, 0.6, -0.6, 0.8, -0.8, 1.05, -1.05)
-"""Turns about the axis of a round thing that are tried, outwards positive [rad]."""
+"""Turns about the axis of a round object that are tried, outwards positive [rad]."""
 
 PITCHES = (0.0, 0.15, -0.15, 0.3, -0.3, 0.5, -0.5)
 """Turns about the normal of the palm that are tried [rad]."""
 
 TILTS = (0.0, -0.1, 0.1, -0.2, 0.2, 0.3)
-"""Turns across the palm, fingers to the thing positive, that are tried [rad]."""
+"""Turns across the palm, fingers to the object positive, that are tried [rad]."""
 
 DRAWN_M = (0.03, 0.06, 0.09, 0.12)
-"""How far a hand is drawn back along its fingers, so that its forearm leaves the thing;
+"""How far a hand is drawn back along its fingers, so that its forearm leaves the object;
 each also tilted [m]."""
 
 DRAWN_TILTS = (0.0, -0.2, 0.2)
 """Turns across the palm that are tried with it [rad]."""
 
 PITCH_WEIGHT, TILT_WEIGHT = 2.0, 4.0
-"""How much worse these turns are than one about a round thing [1]."""
+"""How much worse these turns are than one about a round object [1]."""
 
 OUT_M = 0.1
 """How far a recorded hand is brought to the surface of what it holds at most [m]."""
@@ -46,10 +46,10 @@ LOOSE_M = 0.003
 """A hand that is then farther off its surface or deeper inside does not take it [m]."""
 
 CLEAR_M = 0.014
-"""How far a hand stays above what the thing stands on, if it did so before [m]."""
+"""How far a hand stays above what the object stands on, if it did so before [m]."""
 
 ROUND_SHARE = 0.02
-"""Largest deviation of a round thing's radius [1]."""
+"""Largest deviation of a round object's radius [1]."""
 
 
 @dataclass(frozen=True)
@@ -57,13 +57,13 @@ class Turn:
     """How far a grip is turned from the recorded one."""
 
     yaw: float = 0.0
-    """About the axis of a round thing [rad]."""
+    """About the axis of a round object [rad]."""
 
     pitch: float = 0.0
     """About the normal of the palm [rad]."""
 
     tilt: float = 0.0
-    """Across the palm, the fingers towards the thing [rad]."""
+    """Across the palm, the fingers towards the object [rad]."""
 
     drawn_m: float = 0.0
     """How far the hand is drawn back along its fingers [m]."""
@@ -80,7 +80,7 @@ class Turn:
 
 @dataclass(frozen=True, eq=False)
 class Grip:
-    """Where a hand lies on a thing."""
+    """Where a hand lies on an object."""
 
     hold: Hold
     pose: RigidTransform
@@ -88,34 +88,34 @@ class Grip:
 
     turn: Turn
     raised_m: float
-    """How far it was raised to stay clear of what the thing stands on [m]."""
+    """How far it was raised to stay clear of what the object stands on [m]."""
 
     out_m: float = 0.0
-    """How far it was moved off the thing so that it just touches; negative towards it [m]."""
+    """How far it was moved off the object so that it just touches; negative towards it [m]."""
 
     gap_m: float = 0.0
-    """How far the hand is from the thing then, negative inside: none where it touches [m]."""
+    """How far the hand is from the object then, negative inside: none where it touches [m]."""
 
     beside: str = ""
-    """By which other thing the hand is led that it holds besides; empty where it is this one."""
+    """By which other object the hand is led that it holds besides; empty where it is this one."""
 
     beyond_m: float = 0.0
-    """How far the middle of either of two things that are held together is past the edge of the
+    """How far the middle of either of two objects that are held together is past the edge of the
     hand [m]."""
 
     @property
     def missed_m(self) -> float:
-        """How much too far the hand is from where it would hold the thing [m]."""
+        """How much too far the hand is from where it would hold the object [m]."""
         return max(abs(self.gap_m), LOOSE_M + self.beyond_m if self.beyond_m > 0.0 else 0.0)
 
     @property
     def touches(self) -> bool:
-        """Whether the hand came to the surface of the thing, or was too far from it or inside."""
+        """Whether the hand came to the surface of the object, or was too far from it or inside."""
         return self.missed_m <= LOOSE_M
 
 
 def turns(thing: Thing) -> Iterator[Turn]:
-    """The turns to try on a thing, the smallest first."""
+    """The turns to try on an object, the smallest first."""
     yaws = YAWS if is_round(thing.shape) else YAWS[:1]
     found = [Turn(yaw, pitch) for yaw in yaws for pitch in PITCHES]
     found += [Turn(0.0, pitch, tilt) for pitch in PITCHES for tilt in TILTS[1:]]
@@ -136,13 +136,13 @@ def is_round(shape: Shape) -> bool:
 
 
 class Gripping:
-    """Grips of one body on the things of one scene."""
+    """Grips of one body on the objects of one scene."""
 
     def __init__(self, source: Source, scene: Scene, old: BodyFrames, new: BodyFrames) -> None:
         self.source, self.scene, self.old, self.new = source, scene, old, new
         self.around = Surroundings(new.human, scene)
         self.posture = Solver(new.human, (*scene.place, scene.floor_m), scene.heading).rest
-        holds = led_holds(source.holds, source.companions)
+        holds = led_holds(source.holds, source.co_held)
         self.recorded = {hold: self._recorded(hold) for hold in holds}
 
     def grip(self, hold: Hold, turn: Turn) -> Grip:
@@ -166,12 +166,12 @@ class Gripping:
         pose = pose * RigidTransform.from_translation([0.0, 0.0, -out])
         return Grip(hold, pose, turn, raised, out, gap)
 
-    def with_companions(self, grips: list[Grip]) -> list[Grip]:
+    def with_co_held(self, grips: list[Grip]) -> list[Grip]:
         """The same, with how these hands lie on what they hold besides."""
-        return [*grips, *(one for grip in grips for one in self._companions(grip))]
+        return [*grips, *(one for grip in grips for one in self._co_held(grip))]
 
-    def _companions(self, grip: Grip) -> Iterator[Grip]:
-        for companion in self.source.companions:
+    def _co_held(self, grip: Grip) -> Iterator[Grip]:
+        for companion in self.source.co_held:
             if companion.lead == grip.hold:
                 hold = companion.hold
                 seat = self._seat(hold.thing, grip.hold.thing)
@@ -187,7 +187,7 @@ class Gripping:
         return self.scene.thing(lead).pose.inv() * self.scene.thing(name).pose
 
     def _beyond(self, grip: Grip, seat: RigidTransform, name: str) -> float:
-        """How far the middle of either thing is past the edge of the hand [m].
+        """How far the middle of either object is past the edge of the hand [m].
 
         Along the line on which they lie beside each other, in the plane of the palm.
         """
@@ -202,7 +202,7 @@ class Gripping:
     def _recorded(
         self, hold: Hold
     ) -> tuple[RigidTransform, Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
-        """``T_thing_hand`` and the middle of the contact on the hand's frame and on the thing."""
+        """``T_thing_hand`` and the middle of the contact on the hand's frame and on the object."""
         track = self.source.hands[hold.side]
         part = slice(hold.first, hold.last + 1)
         poses = self.source.paths[hold.thing][part].inv() * track.path[part]
@@ -215,7 +215,7 @@ class Gripping:
         return relative, on_hand, on_thing
 
     def _about(self, hold: Hold, turn: Turn) -> Rotation:
-        """A round thing is gripped as seen from where the performer faces."""
+        """A round object is gripped as seen from where the performer faces."""
         old, new = self.source.scene, self.scene
         facing = (new.heading - new.thing(hold.thing).heading) - (
             old.heading - old.thing(hold.thing).heading
@@ -224,7 +224,7 @@ class Gripping:
         return Rotation.from_euler("z", facing + outwards)
 
     def _raise(self, hold: Hold, pose: RigidTransform) -> float:
-        """How much higher the hand has to be to stay clear of what the thing stands on [m]."""
+        """How much higher the hand has to be to stay clear of what the object stands on [m]."""
         if not self.scene.support(hold.thing):
             return 0.0
         track = self.source.hands[hold.side]
@@ -247,7 +247,7 @@ class Gripping:
 
     def _out(self, hold: Hold, pose: RigidTransform) -> tuple[float, float]:
         """How far against its palm a hand is moved until it touches, and what gap is left [m]."""
-        beside = [one.hold for one in self.source.companions if one.lead == hold]
+        beside = [one.hold for one in self.source.co_held if one.lead == hold]
         along = [(hold, RigidTransform.identity())]
         along += [(one, self._seat(one.thing, hold.thing).inv()) for one in beside]
 
@@ -258,7 +258,7 @@ class Gripping:
         return out, self._gap(hold, pose, out) - TOUCH_M
 
     def _gap(self, hold: Hold, pose: RigidTransform, by_m: float) -> float:
-        """How far a hand is from a thing when it is moved so far against its palm [m]."""
+        """How far a hand is from an object when it is moved so far against its palm [m]."""
         names = [f"{hold.side}_{each}" for each in HAND_SEGMENTS]
         away = pose * RigidTransform.from_translation([0.0, 0.0, -by_m])
         self.around.pose(self.posture, {hold.thing: self.new.rest[hold.side] * away.inv()})

@@ -14,10 +14,10 @@ from capar.model.capture import Capture, TagType
 from capar.model.facts import Touching
 from capar.model.observation import Observation
 from capar.regeneration.body_frames import body_frames
-from capar.regeneration.goals import Goal, support_at, thing_goals
-from capar.regeneration.holds import rides_of
+from capar.regeneration.goals import Goal, object_goals, support_at
+from capar.regeneration.holds import loads_of
 from capar.regeneration.motion import Motion
-from capar.regeneration.paths import Ways, thing_paths
+from capar.regeneration.paths import ObjectPaths, object_paths
 from capar.regeneration.planning import MOST_TURNS, TALLER_M, Draft, beside, check_stance
 from capar.regeneration.quality import Gate, Quality, performed_hands
 from capar.regeneration.scenes import PlanError, Scene
@@ -28,7 +28,7 @@ from capar.regeneration.styles import Kind, Style, own_style
 
 @dataclass(frozen=True, eq=False)
 class HandOver:
-    """A thing that passes from one performer's hand to another's."""
+    """An object that passes from one performer's hand to another's."""
 
     thing: str
     giver: str
@@ -49,7 +49,7 @@ class JointSource:
     capture: Capture
     observation: Observation
     sources: Mapping[str, Source]
-    """By the agent's name, the first one first; the things are the same in all."""
+    """By the agent's name, the first one first; the objects are the same in all."""
 
     hand_overs: tuple[HandOver, ...]
     """In order of time."""
@@ -59,8 +59,8 @@ def joint_source(capture: Capture, observation: Observation) -> JointSource:
     """What a capture of several performers and its observation say of the performance.
 
     Raises:
-        PlanError: As for one performer; or a thing passes between hands that never both hold it,
-            or two things do at once.
+        PlanError: As for one performer; or an object passes between hands that never both hold it,
+            or two objects do at once.
     """
     alone = {
         agent.name: source_of(
@@ -76,14 +76,14 @@ def joint_source(capture: Capture, observation: Observation) -> JointSource:
         sources[name] = replace(
             source,
             others=tuple(sorted(others, key=lambda hold: hold.first)),
-            rides=rides_of(source.paths, holds, touching),
+            loads=loads_of(source.paths, holds, touching),
         )
         check_source(sources[name])
     return JointSource(capture, observation, sources, _hand_overs(sources))
 
 
 def _of(capture: Capture, name: str) -> Capture:
-    """What was recorded of one performer, and all things."""
+    """What was recorded of one performer, and all objects."""
     agent = next(agent for agent in capture.agents if agent.name == name)
     sensors = [sensor for sensor in capture.sensors if capture.agent_of(sensor) == name]
     if not sensors:
@@ -140,7 +140,7 @@ PLACES: tuple[Place, ...] = ((0.0, 0.0), (0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0
 
 @dataclass(frozen=True, eq=False)
 class Cast:
-    """Who performs together, and where each one stands among the same things."""
+    """Who performs together, and where each one stands among the same objects."""
 
     humans: Mapping[str, Human]
     """By the agent's name."""
@@ -149,8 +149,8 @@ class Cast:
     """Likewise."""
 
 
-def joint_ways(source: JointSource, cast: Cast, style: Style, place: Place) -> Ways:
-    """The ways of all things, through the hands of all performers.
+def joint_paths(source: JointSource, cast: Cast, style: Style, place: Place) -> ObjectPaths:
+    """The paths of all objects, through the hands of all performers.
 
     Raises:
         PlanError: Something would be put down where nothing supports it, or meets the head of
@@ -160,7 +160,7 @@ def joint_ways(source: JointSource, cast: Cast, style: Style, place: Place) -> W
     one = replace(source.sources[first], holds=all_holds(source))
     _check_meetings(source, first)
     scene, human = cast.scenes[first], cast.humans[first]
-    goals = thing_goals(one, scene, body_frames(one.human, one.scene), body_frames(human, scene))
+    goals = object_goals(one, scene, body_frames(one.human, one.scene), body_frames(human, scene))
     told = []
     for passed in source.hand_overs:
         before, after = one.paths[passed.thing][passed.first], offer(source, cast, passed, place)
@@ -171,7 +171,7 @@ def joint_ways(source: JointSource, cast: Cast, style: Style, place: Place) -> W
             f"{one.times[passed.first]:.2f} s at ({x:.2f}, {y:.2f}, {z:.2f}) m, between them as "
             f"their statures are, {place[0]:+.1f} m to the taker, {place[1]:+.1f} m upwards"
         )
-    ways = thing_paths(one, scene, goals, human, style)
+    ways = object_paths(one, scene, goals, human, style)
     return replace(ways, told=(*told, *ways.told))
 
 
@@ -187,7 +187,7 @@ def _check_meetings(source: JointSource, first: str) -> None:
 
 
 def offer(source: JointSource, cast: Cast, passed: HandOver, place: Place) -> RigidTransform:
-    """Where a thing is handed over.
+    """Where an object is handed over.
 
     Along the line from one performer to the other where the recorded place divides it, each side
     in proportion to that one's stature; as far above where it was at first as it was recorded.
@@ -234,7 +234,7 @@ def _through(
     before: RigidTransform,
     after: RigidTransform,
 ) -> list[Goal]:
-    """The goals of a thing with those of its being handed over between them.
+    """The goals of an object with those of its being handed over between them.
 
     What nothing bears afterwards goes as far in metres from there as it did.
     """
@@ -318,7 +318,7 @@ def _between(motions: Mapping[str, Motion]) -> Iterator[Gate]:
 
 
 def _coupled(source: JointSource, motions: Mapping[str, Motion]) -> Iterator[Gate]:
-    """Both hands are where they hold the thing as long as both were recorded to hold it."""
+    """Both hands are where they hold the object as long as both were recorded to hold it."""
     for passed in source.hand_overs:
         worst = max(_missed(motions[name], passed, name) for name in (passed.giver, passed.taker))
         missed_m, frame, bodies = worst
@@ -326,7 +326,7 @@ def _coupled(source: JointSource, motions: Mapping[str, Motion]) -> Iterator[Gat
 
 
 def _missed(motion: Motion, passed: HandOver, name: str) -> tuple[float, int, str]:
-    """How far a performer's hands are from their grips while a thing is handed over [m]."""
+    """How far a performer's hands are from their grips while an object is handed over [m]."""
     plan, part = motion.plan, slice(passed.first, passed.last + 1)
     hands, worst = performed_hands(motion), (0.0, passed.first, name)
     for grip in plan.grips:
@@ -346,7 +346,7 @@ NEARER_M = (0.1, 0.3, 0.5, 0.8, 1.2)
 
 @dataclass(frozen=True, eq=False)
 class JointMotion:
-    """The motions of several bodies that handle the same things."""
+    """The motions of several bodies that handle the same objects."""
 
     source: JointSource
     motions: Mapping[str, Motion]
@@ -379,8 +379,8 @@ def regenerate_together(
 ) -> JointMotion:
     """Let bodies do together in a scene what was recorded of others; verified at every frame.
 
-    The things' ways are decided first and are the same for all; then every body is led along its
-    own hands' ways.
+    The objects' paths are decided first and are the same for all; then every body is led along its
+    own hands' paths.
 
     Raises:
         PlanError: It is out of reach or impossible; the message says what would help.
@@ -398,7 +398,7 @@ def regenerate_together(
 
 
 def _reachable(source: JointSource, cast: Cast, kind: Kind) -> tuple[Place, dict[str, Draft]]:
-    """Where things are handed over, and everybody's grips.
+    """Where objects are handed over, and everybody's grips.
 
     The first place that all reach with the recorded grips, else the usual one with turned grips.
 
@@ -432,7 +432,7 @@ def _drafts(
         PlanError: Somebody has none that reaches.
     """
     first = next(iter(source.sources))
-    ways = joint_ways(source, cast, own_style(source.sources[first], kind), place)
+    ways = joint_paths(source, cast, own_style(source.sources[first], kind), place)
     out = {}
     for name in names or list(source.sources):
         one, scene = source.sources[name], cast.scenes[name]

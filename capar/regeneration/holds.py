@@ -30,31 +30,31 @@ SETTLED_SHARE = 0.8
 """Noise may take so small a share of the frames in between out of that [1]."""
 
 GRASP_M = 0.025
-"""How far a living hand may wander on what it carries: skin, fingers and wrist give way [m]."""
+"""How far a living hand may wander on what it carries: skin, fingers and wrist give path [m]."""
 
 GRASP_RAD = float(np.radians(20.0))
 """Likewise the angle [rad]."""
 
 SLID = 2.0
-"""Multiple of both by which a hand may slide before the thing leaves and after it arrived [1]."""
+"""Multiple of both by which a hand may slide before the object leaves and after it arrived [1]."""
 
 UNSEEN_S = 1.0
-"""So long a hand that touches a thing from the first frame on may slide before it holds it [s]."""
+"""So long a hand that touches an object from the first frame on may slide before it holds it [s]."""
 
 STEP_S, TOUCHES_S = 0.15, 0.2
-"""A hand that touches a thing at rest for the first of these before that moves, or after, is seen
+"""A hand that touches an object at rest for the first of these before that moves, or after, is seen
 to touch it; it is held for the second then, so that this is seen again [s]."""
 
 INSTANTS = 5
-"""At so many instants a thing that moves at the head meets it [1]."""
+"""At so many instants an object that moves at the head meets it [1]."""
 
 CARRIED_M = 0.02
-"""A thing that is so far from where a contact begins and from where it ends is under way [m]."""
+"""An object that is so far from where a contact begins and from where it ends is under path [m]."""
 
 
 @dataclass(frozen=True)
 class Hold:
-    """A hand and a thing that are rigidly together."""
+    """A hand and an object that are rigidly together."""
 
     side: str
     thing: str
@@ -64,7 +64,7 @@ class Hold:
 
 @dataclass(frozen=True)
 class Meeting:
-    """A held thing that is rigidly together with the performer's head, if only for an instant."""
+    """A held object that is rigidly together with the performer's head, if only for an instant."""
 
     thing: str
     part: str
@@ -79,10 +79,10 @@ Hands = Mapping[str, tuple[str, RigidTransform]]
 def holds_of(
     hands: Hands, paths: Mapping[str, RigidTransform], touching: list[Touching]
 ) -> tuple[Hold, ...]:
-    """The part of each contact in which hand and thing are together, in order of time.
+    """The part of each contact in which hand and object are together, in order of time.
 
-    Rigidly where that is so; else, where the hand carries the thing, within what a living hand's
-    grasp gives way.
+    Rigidly where that is so; else, where the hand carries the object, within what a living hand's
+    grasp gives path.
     """
     out = []
     for side, (sensor, hand) in hands.items():
@@ -103,7 +103,7 @@ def with_unseen_ends(
     touching: list[Touching],
     times: Float[np.ndarray, "frames"],
 ) -> tuple[Hold, ...]:
-    """Holds from the first frame, or to the last one, where the hand touches the thing there.
+    """Holds from the first frame, or to the last one, where the hand touches the object there.
 
     Nobody saw it come or leave: performed again, it would have to come from ease. Only if it slides
     no longer than ``UNSEEN_S`` meanwhile.
@@ -134,16 +134,16 @@ def with_touches(
     displaced: list[Displaced],
     times: Float[np.ndarray, "frames"],
 ) -> tuple[Hold, ...]:
-    """Holds that begin before the thing moves, and end after it, where the hand touched it then.
+    """Holds that begin before the object moves, and end after it, where the hand touched it then.
 
-    A living hand slides on a thing at rest until it has its grip: only the grip is held, which
-    may begin so late that no touch would be seen before the thing moves.
+    A living hand slides on an object at rest until it has its grip: only the grip is held, which
+    may begin so late that no touch would be seen before the object moves.
 
     Args:
         holds: As they were found.
         hands: The hands.
         touching: The contacts that were observed.
-        displaced: When things moved.
+        displaced: When objects moved.
         times: Of the frames [s].
     """
     out = []
@@ -173,7 +173,7 @@ def meetings_of(
     paths: Mapping[str, RigidTransform],
     touching: list[Touching],
 ) -> tuple[Meeting, ...]:
-    """When things are rigidly together with the head, in order of time.
+    """When objects are rigidly together with the head, in order of time.
 
     What moves at the head as long as it is there, such as a mug that is tipped further, meets it
     at some instants, from when it comes to when it leaves.
@@ -207,7 +207,7 @@ def settled(relative: RigidTransform) -> tuple[int, int] | None:
 
 
 def _together(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | None:
-    """When a hand and a thing that touch are together: rigidly, or while it is carried."""
+    """When a hand and an object that touch are together: rigidly, or while it is carried."""
     rigid = settled(thing.inv() * hand)
     under_way = np.flatnonzero(_under_way(thing))
     if rigid and (not len(under_way) or (rigid[0] <= under_way[0] and under_way[-1] <= rigid[1])):
@@ -216,10 +216,10 @@ def _together(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | 
 
 
 def _carried(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | None:
-    """When a hand grasps a thing that it carries; None if it carries it at no time.
+    """When a hand grasps an object that it carries; None if it carries it at no time.
 
-    The grasp is compared with its median while the thing is under way, and has to stay near that
-    all the way. Before and after, while the thing is about to leave and has arrived, it lasts as
+    The grasp is compared with its median while the object is under path, and has to stay near that
+    all the way. Before and after, while the object is about to leave and has arrived, it lasts as
     long as the hand has not slid much further.
     """
     under_way = np.flatnonzero(_under_way(thing))
@@ -254,15 +254,15 @@ def _apart(
 
 
 NEAR_S = 0.25
-"""A hold may end so long before a thing is seen to move on alone [s]."""
+"""A hold may end so long before an object is seen to move on alone [s]."""
 
 FLIES_M = 0.025
 """What is nowhere farther than this from the parabola of gravity between two holds flew [m]."""
 
 
 @dataclass(frozen=True)
-class Launch:
-    """A thing that a hand sets going, after which it moves on alone."""
+class Release:
+    """An object that a hand sets going, after which it moves on alone."""
 
     side: str
     thing: str
@@ -273,8 +273,8 @@ class Launch:
 
 
 @dataclass(frozen=True)
-class Toss:
-    """A thing that a hand lets go, and that is taken again after nothing but gravity moved it."""
+class Throw:
+    """An object that a hand lets go, and that is taken again after nothing but gravity moved it."""
 
     side: str
     """Of the hand that lets it go."""
@@ -290,14 +290,14 @@ class Toss:
     """Side of the hand that takes it."""
 
 
-def launches_of(
+def releases_of(
     forces: tuple[ForceStyle, ...],
     sides: Mapping[str, str],
     holds: tuple[Hold, ...],
     times: Float[np.ndarray, "frames"],
     paths: Mapping[str, RigidTransform],
-) -> tuple[tuple[Launch, ...], tuple[Toss, ...]]:
-    """The launches of a recording after which a thing is left alone, and the flights to a hand.
+) -> tuple[tuple[Release, ...], tuple[Throw, ...]]:
+    """The releases of a recording after which an object is left alone, and the flights to a hand.
 
     Args:
         forces: As they were observed.
@@ -310,10 +310,10 @@ def launches_of(
         Both in order of time.
 
     Raises:
-        PlanError: Something else than a hand sets a thing going; or the thing is taken again
+        PlanError: Something else than a hand sets an object going; or the object is taken again
             after it was struck, slid or met something.
     """
-    out, tosses = [], []
+    out, throws = [], []
     for force in forces:
         if force.ee not in sides:
             raise PlanError(
@@ -330,7 +330,7 @@ def launches_of(
             frame = min(ends, key=lambda last: abs(float(times[last]) - force.start_s))
         later = [h for h in holds if h.thing == force.object and h.first > frame]
         if later:
-            toss = Toss(side, force.object, frame, later[0].first, later[0].side)
+            toss = Throw(side, force.object, frame, later[0].first, later[0].side)
             if force.struck or not _flies(toss, times, paths[force.object]):
                 raise PlanError(
                     f"{force.object!r} is taken again at {times[later[0].first]:.2f} s after it "
@@ -338,16 +338,16 @@ def launches_of(
                     "where another body's may not come; end the recording before, with to_s in a "
                     "file given with --assume"
                 )
-            tosses.append(toss)
+            throws.append(toss)
             continue
-        out.append(Launch(side, force.object, frame, force))
-    return tuple(out), tuple(tosses)
+        out.append(Release(side, force.object, frame, force))
+    return tuple(out), tuple(throws)
 
 
-def _flies(toss: Toss, times: Float[np.ndarray, "frames"], path: RigidTransform) -> bool:
-    """Whether a thing is near the parabola of gravity from where it is let go to where it is taken.
+def _flies(toss: Throw, times: Float[np.ndarray, "frames"], path: RigidTransform) -> bool:
+    """Whether an object is near the parabola of gravity from where it is let go to where it is taken.
 
-    Any such thing is for a moment: with two frames between, it is not known.
+    Any such object is for a moment: with two frames between, it is not known.
     """
     spots = path.translation[toss.first : toss.last + 1]
     past = times[toss.first : toss.last + 1] - times[toss.first]
@@ -356,9 +356,9 @@ def _flies(toss: Toss, times: Float[np.ndarray, "frames"], path: RigidTransform)
     return len(past) > 2 and bool(np.linalg.norm(spots - straight, axis=1).max() < FLIES_M)
 
 
-def with_blows(holds: tuple[Hold, ...], launches: tuple[Launch, ...]) -> tuple[Hold, ...]:
-    """The holds, and a momentary one for each blow: hand and thing meet in that frame alone."""
-    blows = [Hold(one.side, one.thing, *[one.frame] * 2) for one in launches if one.force.struck]
+def with_blows(holds: tuple[Hold, ...], releases: tuple[Release, ...]) -> tuple[Hold, ...]:
+    """The holds, and a momentary one for each blow: hand and object meet in that frame alone."""
+    blows = [Hold(one.side, one.thing, *[one.frame] * 2) for one in releases if one.force.struck]
     kept = [
         hold
         for hold in holds
@@ -372,8 +372,8 @@ def with_blows(holds: tuple[Hold, ...], launches: tuple[Launch, ...]) -> tuple[H
 
 
 @dataclass(frozen=True)
-class Poise:
-    """A held thing that leans over above or in another one that can be moved."""
+class Leaning:
+    """A held object that leans over above or in another one that can be moved."""
 
     thing: str
     other: str
@@ -384,13 +384,13 @@ class Poise:
     """Borders of the hand's steps meanwhile."""
 
 
-def poises_of(
+def leanings_of(
     observation: Observation,
     sensors: Mapping[str, str],
     things: Mapping[str, Thing],
     holds: tuple[Hold, ...],
-) -> tuple[Poise, ...]:
-    """When held things lean over others that can be moved, in order of time."""
+) -> tuple[Leaning, ...]:
+    """When held objects lean over others that can be moved, in order of time."""
     leans = [fact for fact in observation.facts if isinstance(fact, Leans)]
     out = []
     for fact in observation.facts:
@@ -415,7 +415,7 @@ def poises_of(
             frames = tuple(sorted(frame for frame in ends if first <= frame <= last))
             lowest = (tilts[0].first + tilts[0].last) // 2
             if frames:
-                out.append(Poise(fact.body, fact.other, lowest, frames))
+                out.append(Leaning(fact.body, fact.other, lowest, frames))
     return tuple(sorted(out, key=lambda poise: poise.frames))
 
 
@@ -423,11 +423,11 @@ MOVES_M = 0.02
 """What goes no further than this is not carried along [m]."""
 
 RESTS_M = 0.006
-"""Points of a borne thing that are no higher than this above its lowest are those it stands on
+"""Points of a carried object that are no higher than this above its lowest are those it stands on
 [m]."""
 
 FRICTION = 0.3
-"""Coefficient of friction between what bears and what is borne: ceramics on wood or plastic have
+"""Coefficient of friction between what bears and what is carried: ceramics on wood or plastic have
 0.3 to 0.5 [1]."""
 
 HALF_S = 0.1
@@ -435,8 +435,8 @@ HALF_S = 0.1
 
 
 @dataclass(frozen=True)
-class Ride:
-    """A thing that stands on another one while hands move that."""
+class Load:
+    """An object that stands on another one while hands move that."""
 
     thing: str
     bearer: str
@@ -446,7 +446,7 @@ class Ride:
 
 @dataclass(frozen=True)
 class Steadiness:
-    """Whether a borne thing would slide or fall, at the worst frame of its ride."""
+    """Whether a carried object would slide or fall, at the worst frame of its ride."""
 
     tilt_rad: float
     """Angle between what it weighs on its bearer, which accelerates, and that one's normal."""
@@ -458,20 +458,20 @@ class Steadiness:
     inside_frame: int
 
 
-def rides_of(
+def loads_of(
     paths: Mapping[str, RigidTransform], holds: tuple[Hold, ...], touching: list[Touching]
-) -> tuple[Ride, ...]:
-    """What is borne by what hands move, in order of time; bearers before what they bear.
+) -> tuple[Load, ...]:
+    """What is carried by what hands move, in order of time; bearers before what they bear.
 
     Raises:
-        PlanError: A thing is taken by a hand after it was borne.
+        PlanError: An object is taken by a hand after it was carried.
     """
-    out: list[Ride] = []
+    out: list[Load] = []
     carried = {hold.thing: [(hold.first, hold.last)] for hold in holds}
     for hold in holds:
         carried[hold.thing].append((hold.first, hold.last))
     while True:
-        found = _next_ride(paths, holds, touching, carried, out)
+        found = _next_load(paths, holds, touching, carried, out)
         if found is None:
             return tuple(out)
         later = [h for h in holds if h.thing == found.thing and h.last > found.first]
@@ -485,13 +485,13 @@ def rides_of(
         carried.setdefault(found.thing, []).append((found.first, found.last))
 
 
-def _next_ride(
+def _next_load(
     paths: Mapping[str, RigidTransform],
     holds: tuple[Hold, ...],
     touching: list[Touching],
     carried: Mapping[str, list[tuple[int, int]]],
-    known: list[Ride],
-) -> Ride | None:
+    known: list[Load],
+) -> Load | None:
     """A ride that is not known yet on what is carried."""
     have = {(ride.thing, ride.first) for ride in known}
     for bearer, spans in carried.items():
@@ -501,7 +501,7 @@ def _next_ride(
                 continue
             (thing,) = pair - {bearer}
             for start, end in spans:
-                ride = Ride(thing, bearer, max(start, contact.first), min(end, contact.last))
+                ride = Load(thing, bearer, max(start, contact.first), min(end, contact.last))
                 first, last = ride.first, ride.last
                 held = any(h.thing == thing and h.first < last and first < h.last for h in holds)
                 heights = [paths[name].translation[first, 2] for name in (thing, bearer)]
@@ -511,8 +511,8 @@ def _next_ride(
     return None
 
 
-def _goes_along(ride: Ride, paths: Mapping[str, RigidTransform]) -> bool:
-    """Whether two things are moved and rigidly together meanwhile."""
+def _goes_along(ride: Load, paths: Mapping[str, RigidTransform]) -> bool:
+    """Whether two objects are moved and rigidly together meanwhile."""
     if ride.last <= ride.first:
         return False
     part = slice(ride.first, ride.last + 1)
@@ -525,12 +525,12 @@ def _goes_along(ride: Ride, paths: Mapping[str, RigidTransform]) -> bool:
     return bool(steady and gone.max() >= MOVES_M)
 
 
-def with_riders(
-    paths: Mapping[str, RigidTransform], rides: tuple[Ride, ...]
+def with_loads(
+    paths: Mapping[str, RigidTransform], loads: tuple[Load, ...]
 ) -> dict[str, RigidTransform]:
-    """The ways of all things, what is borne going along with its bearer."""
+    """The paths of all objects, what is carried going along with its bearer."""
     out = dict(paths)
-    for ride in rides:
+    for ride in loads:
         own, bearer = out[ride.thing], out[ride.bearer]
         seat = bearer[ride.first].inv() * own[ride.first]
         there = bearer[ride.first : ride.last + 1] * seat
@@ -543,7 +543,7 @@ def with_riders(
 def steadiness(
     thing: Thing, seat: RigidTransform, bearer: RigidTransform, rate_hz: float
 ) -> Steadiness:
-    """Whether a thing would stay on its bearer.
+    """Whether an object would stay on its bearer.
 
     It weighs on it along the sum of gravity and of what its middle is accelerated; it slides where
     that leaves the cone of friction, and falls over where it leads past what it stands on.
@@ -587,38 +587,36 @@ def _inside(
 
 
 @dataclass(frozen=True)
-class Companion:
-    """A thing that lies in a hand beside another one, by which the hand is led."""
+class CoHeld:
+    """An object that lies in a hand beside another one, by which the hand is led."""
 
     hold: Hold
     lead: Hold
 
     @property
-    def ride(self) -> Ride:
+    def ride(self) -> Load:
         """From when to when it goes along with the other one."""
         first, last = max(self.hold.first, self.lead.first), min(self.hold.last, self.lead.last)
-        return Ride(self.hold.thing, self.lead.thing, first, last)
+        return Load(self.hold.thing, self.lead.thing, first, last)
 
 
-def companions_of(
-    holds: tuple[Hold, ...], paths: Mapping[str, RigidTransform]
-) -> tuple[Companion, ...]:
-    """What is taken and moved in one hand together with another thing.
+def co_held_of(holds: tuple[Hold, ...], paths: Mapping[str, RigidTransform]) -> tuple[CoHeld, ...]:
+    """What is taken and moved in one hand together with another object.
 
-    The hand is led by the thing that it takes first; of several by the one that it holds longest,
+    The hand is led by the object that it takes first; of several by the one that it holds longest,
     then by name.
 
     Raises:
-        PlanError: One of two things that a hand moves together is moved without the other, too.
+        PlanError: One of two objects that a hand moves together is moved without the other, too.
     """
-    out: list[Companion] = []
+    out: list[CoHeld] = []
     for hold in sorted(holds, key=lambda one: (one.first, one.first - one.last, one.thing)):
         known = {companion.hold for companion in out}
         for lead in holds:
             before = (lead.first, lead.first - lead.last, lead.thing)
             same = lead.side == hold.side and lead.thing != hold.thing and lead not in known
             if same and before < (hold.first, hold.first - hold.last, hold.thing):
-                found = Companion(hold, lead)
+                found = CoHeld(hold, lead)
                 if _goes_along(found.ride, paths):
                     _check_together(found, paths)
                     out.append(found)
@@ -626,7 +624,7 @@ def companions_of(
     return tuple(out)
 
 
-def _check_together(found: Companion, paths: Mapping[str, RigidTransform]) -> None:
+def _check_together(found: CoHeld, paths: Mapping[str, RigidTransform]) -> None:
     ride = found.ride
     for hold in (found.hold, found.lead):
         path = paths[hold.thing].translation
@@ -640,18 +638,18 @@ def _check_together(found: Companion, paths: Mapping[str, RigidTransform]) -> No
                 )
 
 
-def led_holds(holds: tuple[Hold, ...], companions: tuple[Companion, ...]) -> tuple[Hold, ...]:
+def led_holds(holds: tuple[Hold, ...], co_held: tuple[CoHeld, ...]) -> tuple[Hold, ...]:
     """The holds by which hands are led."""
-    beside = {companion.hold for companion in companions}
+    beside = {companion.hold for companion in co_held}
     return tuple(hold for hold in holds if hold not in beside)
 
 
 def hand_spans(
-    holds: list[Hold], companions: tuple[Companion, ...]
+    holds: list[Hold], co_held: tuple[CoHeld, ...]
 ) -> Iterator[tuple[Hold, frozenset[str]]]:
-    """From when to when a hand has things, and which ones."""
-    for lead in led_holds(tuple(holds), companions):
-        own = [lead, *(companion.hold for companion in companions if companion.lead == lead)]
+    """From when to when a hand has objects, and which ones."""
+    for lead in led_holds(tuple(holds), co_held):
+        own = [lead, *(companion.hold for companion in co_held if companion.lead == lead)]
         first, last = min(hold.first for hold in own), max(hold.last for hold in own)
         things = frozenset(hold.thing for hold in own)
         yield Hold(lead.side, lead.thing, first, last), things

@@ -23,7 +23,7 @@ class Guide:
 
 
 def guide_of(draft: Draft) -> Guide:
-    """The key postures of a draft whose grips are chosen, and straight ways between them."""
+    """The key postures of a draft whose grips are chosen, and straight paths between them."""
     keys, rest = draft.key_postures()
     times, shown = draft.source.times, sorted(keys)
     at_s = [times[shown[0]] - FADE_S, *times[shown], times[shown[-1]] + FADE_S]
@@ -54,7 +54,7 @@ def perform_plan(plan: Plan, guide: Guide | None = None) -> Motion:
     things = {name: vectors(path) for name, path in plan.things.items()}
     if guide is not None:
         solver.draw_to(guide.postures[0], float(guide.weights[0]))
-    for clear.active in (False, True):  # the way from standing at ease may lead through things
+    for clear.active in (False, True):  # the path from standing at ease may lead through objects
         solver.follow(targets[0], most=SETTLING)
     solver.frame.bound(1.0 / plan.source.rate_hz)
     postures = np.empty((len(plan.source.times), len(solver.posture)))

@@ -14,7 +14,7 @@ from capar.body.recording import HAND_SEGMENTS
 from capar.model.capture import TagType
 from capar.regeneration.body_frames import BodyFrames, free_pose, rest_pose
 from capar.regeneration.collisions import Surroundings
-from capar.regeneration.forces import with_tosses
+from capar.regeneration.forces import with_throws
 from capar.regeneration.goals import (
     HINGE,
     PLANE,
@@ -25,19 +25,19 @@ from capar.regeneration.goals import (
     handled,
     rests,
     scene_constraints,
-    toss_of,
+    throw_of,
 )
-from capar.regeneration.holds import Ride, Steadiness, hand_spans, steadiness, with_riders
+from capar.regeneration.holds import Load, Steadiness, hand_spans, steadiness, with_loads
 from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.solving import Solver, vectors
 from capar.regeneration.sources import Hold, Source
 from capar.regeneration.styles import STRAIGHT, Detour, Kind, Style, mapped
 
 LIFTS_M = (0.0, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3)
-"""How far a way is lifted half-way, in order [m]."""
+"""How far a path is lifted half-way, in order [m]."""
 
 BESIDE_M = 0.01
-"""How far a held thing keeps from what stands beside its way [m]."""
+"""How far a held object keeps from what stands beside its path [m]."""
 
 SLACK_M = 0.0005
 """How much nearer than at both ends it may come [m]."""
@@ -46,20 +46,20 @@ CUT_M = 0.001
 """How much deeper than at both ends it may be inside something [m]."""
 
 SUNK_M = 0.005
-"""A recorded thing that sinks no deeper into what is fixed does so by error [m]."""
+"""A recorded object that sinks no deeper into what is fixed does so by error [m]."""
 
 SPREAD = 9
 """Over so many frames it is raised out of it [1]."""
 
 STEEPEST_M = 0.001
-"""Nor faster than this from either end of its way [m a frame]."""
+"""Nor faster than this from either end of its path [m a frame]."""
 
 STRIDE = 2
-"""Frames between two at which a way is checked."""
+"""Frames between two at which a path is checked."""
 
 
 class Carrying:
-    """Ways of held things through a scene."""
+    """Paths of held objects through a scene."""
 
     def __init__(self, human: Human, scene: Scene, kind: Kind) -> None:
         self.scene, self.kind = scene, kind
@@ -78,11 +78,11 @@ class Carrying:
         """``T_world_thing`` from one goal to the next, and the detour that it makes.
 
         Args:
-            name: Of the thing.
+            name: Of the object.
             part: As it was recorded.
             ends: Where it starts and where it has to go.
-            others: Where the other things are meanwhile.
-            turn: How far the scene's way is turned about z [rad].
+            others: Where the other objects are meanwhile.
+            turn: How far the new scene faces another way about z [rad].
             along: ``T_thing_borne`` of what it bears, which goes the same way.
 
         Raises:
@@ -120,9 +120,9 @@ class Carrying:
     def _out_of_ground(
         self, name: str, path: RigidTransform, others: Mapping[str, RigidTransform]
     ) -> RigidTransform:
-        """The way raised where it sinks a little deeper into something fixed than both ends do.
+        """The path raised where it sinks a little deeper into something fixed than both ends do.
 
-        Recorded things do, as they are tipped up: their poses are a few millimetres off.
+        Recorded objects do, as they are tipped up: their poses are a few millimetres off.
         """
         things = self.scene.things
         fixed = {n: vectors(p) for n, p in others.items() if things[n].tag is TagType.FIXED}
@@ -139,7 +139,7 @@ class Carrying:
     def _check_free(
         self, name: str, path: RigidTransform, others: Mapping[str, RigidTransform]
     ) -> None:
-        """No way leads deeper into something than both of its ends are."""
+        """No path leads deeper into something than both of its ends are."""
         poses, still = vectors(path), {n: vectors(pose) for n, pose in others.items()}
         ends = [dict(self._gaps(name, poses[row], still)) for row in (0, -1)]
         found = (pair for pose in poses for pair in self._gaps(name, pose, still))
@@ -177,8 +177,8 @@ class Carrying:
 
 
 @dataclass(frozen=True, eq=False)
-class Ways:
-    """The ways of all things."""
+class ObjectPaths:
+    """The paths of all objects."""
 
     goals: dict[str, list[Goal]]
     """By name, in order of time."""
@@ -187,21 +187,21 @@ class Ways:
     """``T_world_thing`` by name at every frame."""
 
     told: tuple[str, ...]
-    """What is to be told of them."""
+    """What is to be reported of them."""
 
 
-def thing_paths(
+def object_paths(
     source: Source, scene: Scene, goals: dict[str, list[Goal]], human: Human, style: Style
-) -> Ways:
-    """Where things are at every frame, from goal to goal.
+) -> ObjectPaths:
+    """Where objects are at every frame, from goal to goal.
 
-    Other things stand where they were at first while a way is sought.
+    Other objects stand where they were at first while a path is sought.
     """
     count, turn = len(source.times), scene.heading - source.scene.heading
     carrying = Carrying(human, scene, style.kind)
     still = {name: thing.pose for name, thing in scene.things.items()}
     out, constraints = {}, scene_constraints(source, scene)
-    beside = {companion.hold.thing: companion for companion in source.companions}
+    beside = {companion.hold.thing: companion for companion in source.co_held}
     told = [
         f"{name!r} keeps to its {one.kind} on {one.other!r}"
         for name, one in constraints.items()
@@ -219,7 +219,7 @@ def thing_paths(
             continue
         for start, goal in zip(goals.get(name, []), goals.get(name, [])[1:], strict=False):
             part = style.things[name][start.frame : goal.frame + 1]
-            if goal.frame > start.frame and not toss_of(source, name, first=start.frame):
+            if goal.frame > start.frame and not throw_of(source, name, first=start.frame):
                 if rests(recorded[start.frame : goal.frame + 1], start.pose, goal.pose):
                     poses[start.frame : goal.frame + 1] = [start.pose] * len(part)
                 else:
@@ -233,25 +233,25 @@ def thing_paths(
                     if detour != STRAIGHT:
                         told.append(_lifted(name, source.times[start.frame], detour))
             poses[goal.frame :] = [goal.pose] * (count - goal.frame)
-        out[name] = with_tosses(source, scene, name, RigidTransform.concatenate(poses))
-    rides = (*(companion.ride for companion in source.companions), *source.rides)
+        out[name] = with_throws(source, scene, name, RigidTransform.concatenate(poses))
+    loads = (*(companion.ride for companion in source.co_held), *source.loads)
     told += [
         f"{ride.thing!r} goes along with {ride.bearer!r} from {source.times[ride.first]:.2f} to "
         f"{source.times[ride.last]:.2f} s"
-        for ride in rides
+        for ride in loads
     ]
-    return Ways(goals, with_riders(out, rides), tuple(told))
+    return ObjectPaths(goals, with_loads(out, loads), tuple(told))
 
 
 def _borne(
     source: Source, scene: Scene, name: str, first: int, last: int
 ) -> dict[str, RigidTransform]:
-    """``T_thing_other`` of what goes along with a thing between two frames, from frame to frame.
+    """``T_thing_other`` of what goes along with an object between two frames, from frame to frame.
 
     That is what it bears, and what lies in the hand beside it, with what these bear.
     """
     out: dict[str, RigidTransform] = {}
-    for ride in (*(companion.ride for companion in source.companions), *source.rides):
+    for ride in (*(companion.ride for companion in source.co_held), *source.loads):
         if ride.first < last and first < ride.last and (ride.bearer == name or ride.bearer in out):
             below, own = scene.thing(name).pose, scene.thing(ride.thing).pose
             out[ride.thing] = below.inv() * own
@@ -259,9 +259,9 @@ def _borne(
 
 
 def borne_steadily(
-    source: Source, scene: Scene, paths: Mapping[str, RigidTransform], ride: Ride
+    source: Source, scene: Scene, paths: Mapping[str, RigidTransform], ride: Load
 ) -> Steadiness:
-    """Whether a thing would stay on what bears it along these ways."""
+    """Whether an object would stay on what bears it along these paths."""
     bearer = paths[ride.bearer][ride.first : ride.last + 1]
     seat = bearer[0].inv() * paths[ride.thing][ride.first]
     return steadiness(scene.thing(ride.thing), seat, bearer, source.rate_hz)
@@ -294,7 +294,7 @@ HAND_CUT_M = 0.0003
 
 
 AT_ONCE_S, SOON_M = 0.15, 0.005
-"""A thing that is moved so far within that time of being taken is moved at once [s, m]."""
+"""An object that is moved so far within that time of being taken is moved at once [s, m]."""
 
 COMING_S, COMING_M = 0.1, 0.007
 """Until so long before that a hand keeps so far off it, or it would be seen to touch it [s, m]."""
@@ -338,7 +338,7 @@ def hand_paths(
         for hold in holds:
             for frame in range(hold.first, hold.last + 1):
                 poses[frame] = things[hold.thing][frame] * grips[hold]
-        spans = dict(hand_spans(holds, source.companions))
+        spans = dict(hand_spans(holds, source.co_held))
         for before, after in zip([None, *spans], [*spans, None], strict=True):
             first = before.last if before else 0
             last = after.first if after else len(source.times) - 1
@@ -393,7 +393,7 @@ def _free(
 
 
 def _moved_at_once(source: Source, hold: Hold) -> bool:
-    """Whether a thing is moved as soon as it is taken."""
+    """Whether an object is moved as soon as it is taken."""
     spots = source.paths[hold.thing].translation
     soon = min(hold.first + round(AT_ONCE_S * source.rate_hz), hold.last)
     return bool(np.linalg.norm(spots[soon] - spots[hold.first]) > SOON_M)
@@ -414,7 +414,7 @@ def smallest_detour(short: Callable[[Detour, float], float]) -> Detour:
     """The smallest detour that is clear; if none is, the smallest within ``WORTH_M`` of the best.
 
     Args:
-        short: By how much a path with a detour is too near things [m], 0 where it is clear. It may
+        short: By how much a path with a detour is too near objects [m], 0 where it is clear. It may
             stop at any value that is not below its second argument [m].
     """
     shorts: dict[Detour, float] = {}
@@ -428,7 +428,7 @@ def smallest_detour(short: Callable[[Detour, float], float]) -> Detour:
 
 
 class _Clearance:
-    """How far a hand on its way is from things, whatever the arm does."""
+    """How far a hand on its way is from objects, whatever the arm does."""
 
     def __init__(
         self,
@@ -455,7 +455,7 @@ class _Clearance:
     ) -> Detour:
         """The smallest detour that is clear; if none is, the smallest about as good as the best.
 
-        Of a thing that is moved as soon as it is taken the hand is clear until shortly before.
+        Of an object that is moved as soon as it is taken the hand is clear until shortly before.
         """
         return smallest_detour(
             lambda detour, enough: self._short(
@@ -507,14 +507,14 @@ class _Clearance:
     def _seen_from(
         self, side: str, path: RigidTransform, first: int
     ) -> dict[str, Float[np.ndarray, "frames 7"]]:
-        """Where things are if the scene is moved so that the hand stays at ease."""
+        """Where objects are if the scene is moved so that the hand stays at ease."""
         shift, part = self.new.rest[side] * path.inv(), slice(first, first + len(path))
         return {name: vectors(shift * track[part]) for name, track in self.things.items()}
 
     def _gaps(
         self, side: str, around: Mapping[str, Float[np.ndarray, "frames 7"]], frame: int
     ) -> dict[str, float]:
-        """The hand's distance from each thing near it."""
+        """The hand's distance from each object near it."""
         self.around.place(self.posture, {name: rows[frame] for name, rows in around.items()})
         out: dict[str, float] = {}
         for pair in self.around.near([f"{side}_{each}" for each in HAND_SEGMENTS]):

@@ -15,10 +15,10 @@ from capar.model.facts import LookingAt
 from capar.regeneration.body_frames import BodyFrames, body_frames, head_path
 from capar.regeneration.collisions import NEAR_M, ClearTask, Pair, Surroundings, things_apart
 from capar.regeneration.forces import first_guess, flight_notes, flights
-from capar.regeneration.goals import Goal, thing_goals
+from capar.regeneration.goals import Goal, object_goals
 from capar.regeneration.grips import OUT_M, Grip, Gripping, Turn, drawn_turns, turns
 from capar.regeneration.holds import led_holds
-from capar.regeneration.paths import Care, Ways, hand_paths, thing_paths
+from capar.regeneration.paths import Care, ObjectPaths, hand_paths, object_paths
 from capar.regeneration.scenes import (
     PlanError,
     Scene,
@@ -56,7 +56,7 @@ def grasps(
     Args:
         source: The recorded performance.
         firm_s: How long before a hold the hand is led more and more firmly [s].
-        events: Frames at which things are taken, let go, and have to be somewhere.
+        events: Frames at which objects are taken, let go, and have to be somewhere.
         weight: How firmly it is led in holds at these frames; 1 at others [1].
     """
     out = {}
@@ -97,7 +97,7 @@ def around(
 def looks(
     source: Source, things: Mapping[str, RigidTransform], head: RigidTransform
 ) -> Float[np.ndarray, "frames 3"]:
-    """The point looked at: a thing that was looked at, else ahead along the line of sight."""
+    """The point looked at: an object that was looked at, else ahead along the line of sight."""
     points = head.translation + FAR_M * head.rotation.apply([1.0, 0.0, 0.0])
     for fact in source.observation.facts:
         if isinstance(fact, LookingAt) and fact.object in things:
@@ -117,14 +117,14 @@ REACH_M, REACH_RAD = 0.0009, float(np.radians(0.9))
 """A hand that misses a goal by more cannot reach it: a little less than the gates allow."""
 
 CUT_M = 0.001
-"""How deep a part of the body may be inside a thing [m]."""
+"""How deep a part of the body may be inside an object [m]."""
 
 PRESSED_M = 0.025
-"""An arm that is no deeper inside what it holds presses against it: flesh gives way and the
-mannequin does not. It is a last resort, told, and fails the gate of penetration [m]."""
+"""An arm that is no deeper inside what it holds presses against it: flesh gives path and the
+mannequin does not. It is a last resort, reported, and fails the gate of penetration [m]."""
 
 APART_M = 0.02
-"""Things that a hand takes together are no more than this farther apart than they were [m]."""
+"""Objects that a hand takes together are no more than this farther apart than they were [m]."""
 
 KEYS = 6
 """Key postures in a hold, besides those at goals."""
@@ -171,14 +171,14 @@ class Draft:
         human: Human,
         style: Style,
         watched: frozenset[int] = frozenset(),
-        ways: Ways | None = None,
+        ways: ObjectPaths | None = None,
     ) -> None:
         self.source, self.scene = source, scene
         self.old = body_frames(source.human, source.scene)
         self.new = body_frames(human, scene)
         if ways is None:
-            goals = thing_goals(source, scene, self.old, self.new, style.force)
-            ways = thing_paths(source, scene, goals, human, style)
+            goals = object_goals(source, scene, self.old, self.new, style.force)
+            ways = object_paths(source, scene, goals, human, style)
         self.goals, self.things, self.told = ways.goals, ways.paths, list(ways.told)
         self.things = first_guess(source, scene, self.things)
         self.head = head_path(source, self.old, self.new)
@@ -209,10 +209,10 @@ class Draft:
 
     def _verb(self, hold: Hold, frame: int) -> str:
         """What a hand does at a frame with what it holds."""
-        tosses = [toss for toss in self.source.tosses if toss.thing == hold.thing]
-        if any((frame, hold.side) == (toss.first, toss.side) for toss in tosses):
+        throws = [toss for toss in self.source.throws if toss.thing == hold.thing]
+        if any((frame, hold.side) == (toss.first, toss.side) for toss in throws):
             return "throw"
-        caught = any((frame, hold.side) == (toss.last, toss.catcher) for toss in tosses)
+        caught = any((frame, hold.side) == (toss.last, toss.catcher) for toss in throws)
         return "catch" if caught else "follow"
 
     def reachable_grips(self, most: int = MOST_TURNS) -> tuple[list[Grip], str | None]:
@@ -224,7 +224,7 @@ class Draft:
         against what it holds whatever the grip, that is in ``pressed``.
         """
         chosen: list[Grip] = []
-        for group in _groups(led_holds(self.source.holds, self.source.companions)):
+        for group in _groups(led_holds(self.source.holds, self.source.co_held)):
             usual = list(turns(self.scene.thing(group[0].thing)))[:most]
             miss, grips = self._best_grips(chosen, group, usual)
             if miss.ratio > 1.0 and miss.cuts and most == MOST_TURNS:
@@ -259,7 +259,7 @@ class Draft:
     def _eased_grips(
         self, chosen: list[Grip], group: list[Hold], miss: Miss, grips: list[Grip]
     ) -> tuple[Miss, list[Grip]]:
-        """Grips turned as the body itself would take the thing; the best ones that were tried."""
+        """Grips turned as the body itself would take the object; the best ones that were tried."""
         best = miss, grips
         for start in (self._gripped(group, Turn()), grips):
             eased = start
@@ -273,7 +273,7 @@ class Draft:
 
     def _gripped(self, group: list[Hold], turn: Turn) -> list[Grip]:
         """Grips of some holds, and of what these hands hold besides."""
-        return self.gripping.with_companions([self.gripping.grip(hold, turn) for hold in group])
+        return self.gripping.with_co_held([self.gripping.grip(hold, turn) for hold in group])
 
     def _as_turned(self, chosen: list[Grip], group: list[Hold], grips: list[Grip]) -> list[Grip]:
         """Grips turned as palms are, in the mean, that have to be somewhere and may turn freely."""
@@ -295,13 +295,13 @@ class Draft:
             eased *= min(1.0, MOST_EASED_RAD / max(float(np.linalg.norm(eased)), 1e-9))
             x, y, z = (float(angle) for angle in eased)
             out.append(self.gripping.grip(grip.hold, replace(grip.turn, eased=(x, y, z))))
-        return self.gripping.with_companions(out)
+        return self.gripping.with_co_held(out)
 
     def _missed(self, grips: list[Grip], group: list[Hold], enough: float) -> Miss:
         """How far the key postures of some holds are missed, in units of what is allowed.
 
         No further than is enough to be worse than another grip. A hand that does not come to the
-        surface of the thing has no grip.
+        surface of the object has no grip.
         """
         loose = max(grips, key=lambda grip: grip.missed_m)
         if not loose.touches:
@@ -344,7 +344,7 @@ class Draft:
     def _follow(self, solver: Solver, grips: list[Grip], frame: int) -> Targets:
         """Reach for the goals of a key frame; a second time where limbs are inside something.
 
-        From wherever the body was before, the way there may lead through things.
+        From wherever the body was before, the way there may lead through objects.
         """
         goal = self.targets(grips, frame)
         self.clear.active = False
@@ -377,7 +377,7 @@ class Draft:
     def deepest_cut(
         self, posture: Float[np.ndarray, "posture"], grips: list[Grip], frame: int
     ) -> Pair | None:
-        """The part of the body that is deepest inside a thing, but for hands in what they hold."""
+        """The part of the body that is deepest inside an object, but for hands in what they hold."""
         around = self.gripping.around
         around.pose(posture, {name: path[frame] for name, path in self.things.items()})
         held = {(g.hold.side, g.hold.thing) for g in grips}
@@ -437,13 +437,13 @@ def check_stance(scene: Scene, human: Human) -> None:
             )
 
 
-def check_companions(source: Source, scene: Scene, human: Human) -> None:
+def check_co_held(source: Source, scene: Scene, human: Human) -> None:
     """What a hand takes together stands beside each other, about as near as it did.
 
     Raises:
         PlanError: It stands farther apart, or inside each other.
     """
-    for companion in source.companions:
+    for companion in source.co_held:
         names = companion.hold.thing, companion.lead.thing
         before, now = (things_apart(where, names, human) for where in (source.scene, scene))
         said = f"{names[0]!r} stands {{}} {names[1]!r}, with which the {companion.hold.side} hand "
@@ -460,7 +460,7 @@ def check_companions(source: Source, scene: Scene, human: Human) -> None:
 
 
 def _groups(holds: tuple[Hold, ...]) -> list[list[Hold]]:
-    """Holds of one thing that overlap, in order of time."""
+    """Holds of one object that overlap, in order of time."""
     out: list[list[Hold]] = []
     for hold in holds:
         for group in out:
@@ -502,7 +502,7 @@ ADJUSTED_M = 0.005
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """Where hands, things, head and gaze are to be at every frame."""
+    """Where hands, objects, head and gaze are to be at every frame."""
 
     source: Source
     scene: Scene
@@ -511,7 +511,7 @@ class Plan:
     goals: Mapping[str, list[Goal]]
     grips: tuple[Grip, ...]
     detours: Mapping[tuple[str, int], Detour]
-    """By side and the free stretch's first frame."""
+    """By side and the free interval's first frame."""
 
     hands: Mapping[str, RigidTransform]
     """``T_world_hand`` by side at every frame, the frame on the hand."""
@@ -559,7 +559,7 @@ def reachable(
             help.
     """
     style = style or own_style(source)
-    check_companions(source, scene, human)
+    check_co_held(source, scene, human)
     pressed: Draft | None = None
     try:
         found = _draft(source, scene, human, style, watched)
@@ -603,7 +603,7 @@ def is_possible(source: Source, scene: Scene, human: Human, most: int = FEW_TURN
 
 
 def led(draft: Draft, care: Care) -> Plan:
-    """A plan with the ways of free hands, so careful."""
+    """A plan with the paths of free hands, so careful."""
     source, scene = draft.source, draft.scene
     held = {grip.hold: grip.pose for grip in draft.grips}
     hands, detours = hand_paths(

@@ -15,7 +15,7 @@ from capar.model.par import Condition
 from capar.regeneration.collisions import NEAR_M, Pair, Surroundings, inner_gap
 from capar.regeneration.forces import ForceKind, end_velocity, flight_faults
 from capar.regeneration.goals import scene_constraints
-from capar.regeneration.holds import FRICTION, SETTLED_M, Hold, Ride
+from capar.regeneration.holds import FRICTION, SETTLED_M, Hold, Load
 from capar.regeneration.motion import Motion
 from capar.regeneration.paths import borne_steadily
 from capar.regeneration.planning import Plan
@@ -31,7 +31,7 @@ MOVING_M = 0.05
 
 @dataclass(frozen=True)
 class Gate:
-    """One thing that is demanded of a motion."""
+    """One object that is demanded of a motion."""
 
     name: str
     value: float
@@ -98,8 +98,8 @@ def quality(motion: Motion) -> Quality:
     contacts, thumb = _contact_gates(motion)
     gates = (
         *_constraint_gates(motion, errors),
-        *_way_gates(motion, hands),
-        *_toss_gates(motion, hands),
+        *_guide_gates(motion, hands),
+        *_throw_gates(motion, hands),
         *contacts,
         *_body_gates(motion),
         _still_gate(motion),
@@ -162,8 +162,8 @@ def _constraint_gates(motion: Motion, errors: list[_Error]) -> Iterator[Gate]:
     yield Gate("on the way", 1e3 * way_m[0], 2.0, "mm", False, way_m[1], way_m[2])
 
 
-def _way_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gate]:
-    """How far things, and hands on them, are off the hinge, rail or plane that they keep to."""
+def _guide_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gate]:
+    """How far objects, and hands on them, are off the hinge, rail or plane that they keep to."""
     plan = motion.plan
     found = scene_constraints(plan.source, plan.scene)
     worst = (0.0, -1, "")
@@ -184,11 +184,11 @@ def _way_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gat
         yield Gate("constraint way", 1e3 * worst[0], 2.0, "mm", False, *worst[1:])
 
 
-def _toss_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gate]:
-    """Things fly by gravity alone, with the velocities of the hands that throw and catch them."""
+def _throw_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gate]:
+    """Objects fly by gravity alone, with the velocities of the hands that throw and catch them."""
     plan, times = motion.plan, motion.plan.source.times
     off, gain, jump = (0.0, -1, ""), (0.0, -1, ""), (0.0, -1, "")
-    for toss in plan.source.tosses:
+    for toss in plan.source.throws:
         name, part = toss.thing, slice(toss.first, toss.last + 1)
         middle = plan.scene.thing(name).shape.bounds.mean(axis=0)
         spots = plan.things[name].apply(middle)
@@ -205,7 +205,7 @@ def _toss_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Ga
                     thing_mps = end_velocity(-sign * times[free], spots[free])
                     apart = float(np.linalg.norm(hand_mps + thing_mps))
                     jump = max(jump, (apart, frame, f"{hold.side} hand, {name}"))
-    if plan.source.tosses:
+    if plan.source.throws:
         yield Gate("flight by gravity", 1e3 * off[0], 1.0, "mm", False, *off[1:])
         yield Gate("flight energy", gain[0], 0.01, "J/kg", False, *gain[1:])
         yield Gate("flight speed", jump[0], 0.3, "m/s", False, *jump[1:])
@@ -217,7 +217,7 @@ def _around(times: Float[np.ndarray, "frames"], frame: int, sign: int) -> list[i
 
 
 def _head_error(motion: Motion) -> tuple[float, int, str]:
-    """How far the head is from where a thing meets it, at worst [m]."""
+    """How far the head is from where an object meets it, at worst [m]."""
     plan, worst = motion.plan, (0.0, -1, "")
     spots, _ = plan.human.sites(motion.postures, ["between_eyes"])["between_eyes"]
     for meeting in plan.source.meetings:
@@ -232,7 +232,7 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
     """Penetration of anything, and how far free hands keep from what they do not touch.
 
     A thumb is not posed, and its mannequin's base stands out from the palm: what it cuts of the
-    thing that its hand takes is told apart.
+    object that its hand takes is told apart.
     """
     plan = motion.plan
     around = Surroundings(plan.human, plan.scene)
@@ -264,10 +264,10 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
     return gates, Measure("thumb and what it holds", 1e3 * pair.distance_m, "mm", frame, bodies)
 
 
-def _inner_gaps(plan: Plan) -> dict[frozenset[str], tuple[Ride, float]]:
-    """What is borne in a hollow thing, and how far it is from its surface all the way [m]."""
+def _inner_gaps(plan: Plan) -> dict[frozenset[str], tuple[Load, float]]:
+    """What is carried in a hollow object, and how far it is from its surface all the way [m]."""
     out = {}
-    for ride in plan.source.rides:
+    for ride in plan.source.loads:
         bearer, thing = plan.scene.thing(ride.bearer), plan.scene.thing(ride.thing)
         seat = plan.things[ride.bearer][ride.first].inv() * plan.things[ride.thing][ride.first]
         gap_m = inner_gap(bearer.shape, thing.shape, seat)
@@ -287,7 +287,7 @@ def is_hand(part: str) -> bool:
 
 
 def _is_free(motion: Motion, pair: Pair, frame: int) -> bool:
-    """Whether a hand holds nothing, nor just did nor is about to, least of all that thing."""
+    """Whether a hand holds nothing, nor just did nor is about to, least of all that object."""
     side = pair.part.partition("_")[0]
     holds = _holds(motion, side)
     if _takes(motion, side, pair.thing, frame):
@@ -296,7 +296,7 @@ def _is_free(motion: Motion, pair: Pair, frame: int) -> bool:
 
 
 def _takes(motion: Motion, side: str, thing: str, frame: int) -> bool:
-    """Whether a hand holds that thing, or is about to, or has just let it go."""
+    """Whether a hand holds that object, or is about to, or has just let it go."""
     own = (hold for hold in _holds(motion, side) if hold.thing == thing)
     return any(_near_hold(motion, hold, frame, LEAVING_S) for hold in own)
 
@@ -351,7 +351,7 @@ def _still_gate(motion: Motion) -> Gate:
         for span in plan.source.carried:
             if span.thing == name:
                 steps[span.first : span.last] = 0.0
-        for launch in plan.source.launches:
+        for launch in plan.source.releases:
             if launch.thing == name:
                 steps[launch.frame :] = 0.0
         worst = max(worst, (float(steps.max()), int(steps.argmax()), name))
@@ -359,9 +359,9 @@ def _still_gate(motion: Motion) -> Gate:
 
 
 def _borne_gates(plan: Plan) -> Iterator[Gate]:
-    """What is borne neither slides nor falls; none where nothing is."""
+    """What is carried neither slides nor falls; none where nothing is."""
     found = [
-        (borne_steadily(plan.source, plan.scene, plan.things, r), r) for r in plan.source.rides
+        (borne_steadily(plan.source, plan.scene, plan.things, r), r) for r in plan.source.loads
     ]
     if not found:
         return
@@ -381,7 +381,7 @@ def _borne_gates(plan: Plan) -> Iterator[Gate]:
 def _together_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gate]:
     """What one hand holds together does not slide in it; none where there is nothing."""
     worst = (-1.0, -1, "")
-    for companion in motion.plan.source.companions:
+    for companion in motion.plan.source.co_held:
         ride, hand = companion.ride, hands[companion.hold.side]
         part = slice(ride.first, ride.last + 1)
         for name in (ride.thing, ride.bearer):
@@ -411,11 +411,11 @@ def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:
 
 
 def _model(plan: Plan, side: str) -> RigidTransform:
-    """The way of a hand whose timing is to be kept: the planned one where none is recorded.
+    """The path of a hand whose timing is to be kept: the planned one where none is recorded.
 
-    Nor is there one where a hand strikes faster or slower so that the thing moves as it did.
+    Nor is there one where a hand strikes faster or slower so that the object moves as it did.
     """
-    led = {launch.side for launch in plan.source.launches if plan.style.force is ForceKind.SAME}
+    led = {launch.side for launch in plan.source.releases if plan.style.force is ForceKind.SAME}
     planned = plan.style.kind is Kind.EVEN or side in led
     return plan.hands[side] if planned else plan.style.hands[side]
 
@@ -423,10 +423,10 @@ def _model(plan: Plan, side: str) -> RigidTransform:
 def _with_thing(
     plan: Plan, side: str, first: int, last: int
 ) -> Float[np.ndarray, "frames 3"] | None:
-    """The way of a hand that had been rigidly on what it holds throughout some frames.
+    """The path of a hand that had been rigidly on what it holds throughout some frames.
 
     A living hand slides a little on what it carries, and performed it does not; its speed is
-    compared with the thing's.
+    compared with the object's.
     """
     for grip in plan.grips:
         hold = grip.hold
@@ -437,7 +437,7 @@ def _with_thing(
 
 
 def _pieces(motion: Motion, side: str) -> list[tuple[int, int]]:
-    """Stretches between events of a hand."""
+    """Intervals between events of a hand."""
     plan = motion.plan
     edges = {0, len(motion.postures) - 1}
     for hold in plan.source.holds:
@@ -456,10 +456,10 @@ SIDES = ("right", "left")
 """Hands are called by their side."""
 
 HEAD = "head"
-"""The performer's own part that things meet."""
+"""The performer's own part that objects meet."""
 
 Contact = tuple[str, str]
-"""A hand, by its side, or a thing; and what it touches."""
+"""A hand, by its side, or an object; and what it touches."""
 
 
 @dataclass(frozen=True)
@@ -470,7 +470,7 @@ class Asserted:
     frame: int
     contacts: tuple[tuple[Contact, bool], ...]
     moved: str
-    """The thing that it moves; empty if none."""
+    """The object that it moves; empty if none."""
 
 
 def contact_distances(around: Surroundings, motion: Motion, frame: int) -> dict[Contact, float]:

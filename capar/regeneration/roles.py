@@ -18,12 +18,12 @@ Kinds = Callable[[str], tuple[str, ...]]
 """A kind and every more general one, nearest first."""
 
 Ask = Callable[["Role", tuple[str, ...]], str]
-"""Asks a user which of several things takes a part."""
+"""Asks a user which of several objects takes a part."""
 
 
 @dataclass(frozen=True)
 class Role:
-    """A recorded thing that takes part in an action."""
+    """A recorded object that takes part in an action."""
 
     name: str
     kind: str
@@ -36,7 +36,7 @@ class Role:
 
 @dataclass(frozen=True)
 class Binding:
-    """The thing of a scene that takes a part, and why that one."""
+    """The object of a scene that takes a part, and why that one."""
 
     role: str
     thing: str
@@ -44,11 +44,11 @@ class Binding:
 
 
 class AmbiguousError(PlanError):
-    """Several things of a scene fit a part that nothing was stated for.
+    """Several objects of a scene fit a part that nothing was stated for.
 
     Attributes:
         role: The part.
-        fitting: The things, sorted.
+        fitting: The objects, sorted.
     """
 
     def __init__(self, role: Role, fitting: tuple[str, ...]) -> None:
@@ -61,19 +61,19 @@ class AmbiguousError(PlanError):
 
 
 def kind_of(thing: Thing) -> str:
-    """The noun for a thing: its kind, else its own name."""
+    """The noun for an object: its kind, else its own name."""
     return thing.kind or thing.name
 
 
 def roles_of(source: Source) -> tuple[Role, ...]:
     """What takes part in a recorded action: what is acted on, what that bears, and its supports.
 
-    Other things of the recorded scene have no part.
+    Other objects of the recorded scene have no part.
     """
     acted = list(source.observation.complex_par.objects)
     acted += [hold.thing for hold in source.holds]
-    acted += [poise.other for poise in source.poises]
-    acted += [ride.thing for ride in source.rides]
+    acted += [poise.other for poise in source.leanings]
+    acted += [ride.thing for ride in source.loads]
     taking = [name for name in dict.fromkeys(acted) if name in source.scene.things]
     for name in tuple(taking):
         taking += [one for one in dict.fromkeys(ends_on(source, name)) if one and one not in taking]
@@ -87,7 +87,7 @@ def _role(source: Source, name: str, taking: Sequence[str]) -> Role:
 
 
 def ends_on(source: Source, name: str) -> tuple[str, str]:
-    """What a recorded thing stands on at first and in the end; empty where it is nothing."""
+    """What a recorded object stands on at first and in the end; empty where it is nothing."""
     x, y, z = (float(value) for value in source.paths[name].translation[-1])
     after = moved(source.scene, name, (x, y, z), source.scene.thing(name).heading)
     return source.scene.support(name), after.support(name)
@@ -102,16 +102,16 @@ def bind(
     *,
     own: bool = False,
 ) -> tuple[Binding, ...]:
-    """The thing of a scene for every part.
+    """The object of a scene for every part.
 
     What is stated counts first; then a part that bears another one is taken by what that one's
-    thing stands on; then the only thing that can be moved, or is fixed, as the recorded one and is
+    object stands on; then the only object that can be moved, or is fixed, as the recorded one and is
     nearest of kind. Where several are equally near, it is asked.
 
     Raises:
-        UnknownNameError: A stated part or thing does not exist.
-        AmbiguousError: Several things fit, and there is nobody to ask.
-        PlanError: Nothing fits, or one thing has two parts.
+        UnknownNameError: A stated part or object does not exist.
+        AmbiguousError: Several objects fit, and there is nobody to ask.
+        PlanError: Nothing fits, or one object has two parts.
     """
     found = _stated(roles, scene, stated)
     while open_roles := [role for role in roles if role.name not in found]:
@@ -143,7 +143,7 @@ def _next(
     *,
     own: bool,
 ) -> tuple[Role, Binding]:
-    """The part that is decided next, and its thing: supports wait for what they bear."""
+    """The part that is decided next, and its object: supports wait for what they bear."""
     names = {role.name for role in roles}
     ready = [role for role in roles if not names.intersection(role.bears)] or list(roles)
     free = [thing for thing in scene.things.values() if not _taken(thing.name, found)]
@@ -173,13 +173,13 @@ def _taken(name: str, found: Mapping[str, Binding]) -> bool:
 
 
 def _beneath(role: Role, scene: Scene, found: Mapping[str, Binding]) -> str:
-    """What the thing stands on that has a part which this one bears."""
+    """What the object stands on that has a part which this one bears."""
     borne = (found[name].thing for name in role.bears if name in found)
     return next((support for thing in borne if (support := scene.support(thing))), "")
 
 
 def _fitting(role: Role, free: Sequence[Thing], kinds: Kinds) -> tuple[str, tuple[str, ...]]:
-    """The nearest kind above a part's that free things are cases of, and these things."""
+    """The nearest kind above a part's that free objects are cases of, and these objects."""
     same = [thing for thing in free if thing.tag is role.tag]
     for general in kinds(role.kind):
         fitting = [thing.name for thing in same if general in kinds(kind_of(thing))]
@@ -202,17 +202,17 @@ def _nothing(role: Role, scene: Scene) -> PlanError:
 
 
 ASIDE = "_beside"
-"""What is put after the name of a thing that has no part and the name of one that has."""
+"""What is put after the name of an object that has no part and the name of one that has."""
 
 Cast = Mapping[str, str]
-"""The thing of the scene that takes each recorded thing's part."""
+"""The object of the scene that takes each recorded object's part."""
 
 
 def captured_scene(capture: Capture) -> Scene:
-    """The scene that a capture was recorded in: its things, and where the performer stood.
+    """The scene that a capture was recorded in: its objects, and where the performer stood.
 
     Raises:
-        PlanError: A thing has no shape, or there is no sensor of the head.
+        PlanError: An object has no shape, or there is no sensor of the head.
     """
     return scene_of(capture, Human.of(measures_of(capture.agent)))
 
@@ -220,13 +220,13 @@ def captured_scene(capture: Capture) -> Scene:
 def cast(
     source: Source, scene: Scene, parts: Cast, goals: Mapping[str, str] | None = None
 ) -> tuple[Source, Scene]:
-    """A recorded performance, and a scene in which others have the parts of its things.
+    """A recorded performance, and a scene in which others have the parts of its objects.
 
-    In both the things bear their recorded names; a thing without a part keeps its own and stands
-    in the way.
+    In both the objects bear their recorded names; an object without a part keeps its own and stands
+    in the path.
 
     Raises:
-        PlanError: A recorded thing has no part, or a fixed one is to be moved.
+        PlanError: A recorded object has no part, or a fixed one is to be moved.
     """
     check_movable(source, scene, parts)
     named: dict[str, str] = {}
@@ -261,13 +261,13 @@ def cast(
 def _shifted(
     spot: tuple[float, float, float], actor: Thing, fitted: Thing
 ) -> tuple[float, float, float]:
-    """Where the fitted thing's origin is when the thing's own is at a spot."""
+    """Where the fitted object's origin is when the object's own is at a spot."""
     x, y, z = np.asarray(spot) + np.asarray(fitted.place) - np.asarray(actor.place)
     return float(x), float(y), float(z)
 
 
 def with_only(source: Source, names: Container[str]) -> Source:
-    """A recorded performance without the things that take no part in it."""
+    """A recorded performance without the objects that take no part in it."""
     scene = source.scene
     things = {name: thing for name, thing in scene.things.items() if name in names}
     paths = {name: path for name, path in source.paths.items() if name in names}
@@ -286,7 +286,7 @@ def check_movable(source: Source, scene: Scene, parts: Cast) -> None:
 
 
 def own_names(source: Source, scene: Scene, parts: Cast) -> dict[str, str]:
-    """The scene's names of the things that a performance calls by their recorded ones."""
+    """The scene's names of the objects that a performance calls by their recorded ones."""
     taken = set(parts.values())
     found = {name: parts[name] for name in source.scene.things if name in parts}
     for name in scene.things:
@@ -301,7 +301,7 @@ def _movable(scene: Scene) -> str:
 
 
 def _fitted(actor: Thing, part: Thing) -> Thing:
-    """The thing with its frame's origin at the same share of its box as the recorded one's."""
+    """The object with its frame's origin at the same share of its box as the recorded one's."""
     low, high = part.shape.bounds
     share = -low / np.maximum(high - low, 1e-9)
     origin = actor.shape.bounds[0] + share * actor.size

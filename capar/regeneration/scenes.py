@@ -18,12 +18,12 @@ LOWER_ARMS = ("_hand", "_fingers", "_fingertips", "_thumb", "_forearm")
 """How the names of these parts of the body end."""
 
 ON_M = 0.02
-"""A thing whose lowest point is this near above another one's top stands on it [m]."""
+"""An object whose lowest point is this near above another one's top stands on it [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scene(Things):
-    """Things, the floor, and the stance."""
+    """Objects, the floor, and the stance."""
 
     place: tuple[float, float]
     """Where the performer stands [m]."""
@@ -38,22 +38,22 @@ class Scene(Things):
     """Whether the performer has to stand just there."""
 
     goals: Mapping[str, str] = field(default_factory=dict)
-    """What a thing is put on in the end, where that is not what the recording says."""
+    """What an object is put on in the end, where that is not what the recording says."""
 
     spots: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
-    """Where the frame of a thing is in the end, where that is stated [m]."""
+    """Where the frame of an object is in the end, where that is stated [m]."""
 
     entered: frozenset[str] = frozenset()
-    """Things that stop neither hands nor forearms, since their sizes are only assumed."""
+    """Objects that stop neither hands nor forearms, since their sizes are only assumed."""
 
     fastened: Mapping[str, str] = field(default_factory=dict)
-    """By the name of what is on a hinge or a rail, the fixed thing that bears that."""
+    """By the name of what is on a hinge or a rail, the fixed object that bears that."""
 
     together: Mapping[str, str] = field(default_factory=dict)
-    """By the name of what lies in a hand beside another thing, that thing."""
+    """By the name of what lies in a hand beside another object, that object."""
 
     def stops(self, part: str, name: str) -> bool:
-        """Whether a thing stops a part of the body: no ground stops the feet that stand on it."""
+        """Whether an object stops a part of the body: no ground stops the feet that stand on it."""
         if part.endswith(FEET):
             thing = self.thing(name)
             top = _corners(thing)[1, 2]
@@ -61,7 +61,7 @@ class Scene(Things):
         return not (part.endswith(LOWER_ARMS) and name in self.entered)
 
     def support(self, name: str) -> str:
-        """What a thing stands on; empty where nothing is beneath it."""
+        """What an object stands on; empty where nothing is beneath it."""
         thing = self.thing(name)
         low, middle = _corners(thing)[0, 2], np.asarray(thing.place)[:2]
         for other in self.things.values():
@@ -73,13 +73,13 @@ class Scene(Things):
 
 
 def moved(scene: Scene, name: str, place: tuple[float, float, float], heading: float) -> Scene:
-    """The scene with a thing elsewhere; what stands on it stays where it is."""
+    """The scene with an object elsewhere; what stands on it stays where it is."""
     thing = replace(scene.thing(name), place=place, heading=heading)
     return replace(scene, things={**scene.things, name: thing})
 
 
 def resized(scene: Scene, name: str, factor: float) -> Scene:
-    """The scene with a thing of another size, its lowest point as high as before.
+    """The scene with an object of another size, its lowest point as high as before.
 
     What stands on it stands on its new top.
     """
@@ -96,12 +96,12 @@ def resized(scene: Scene, name: str, factor: float) -> Scene:
 
 
 def taken_with(scene: Scene, name: str) -> list[str]:
-    """What a hand takes together with a thing by which it is led."""
+    """What a hand takes together with an object by which it is led."""
     return [other for other, lead in scene.together.items() if lead == name]
 
 
 def raised(scene: Scene, name: str, by_m: float) -> Scene:
-    """The scene with a thing, and all that stands or is fastened on it, higher by so much [m]."""
+    """The scene with an object, and all that stands or is fastened on it, higher by so much [m]."""
     fastened = [thing for thing in scene.things if scene.fastened.get(thing) == name]
     for raised_one in dict.fromkeys((name, *stack(scene, name), *fastened)):
         scene = _lifted(scene, raised_one, by_m)
@@ -109,7 +109,7 @@ def raised(scene: Scene, name: str, by_m: float) -> Scene:
 
 
 def stack(scene: Scene, name: str) -> list[str]:
-    """What stands on a thing, and what stands on that, from below."""
+    """What stands on an object, and what stands on that, from below."""
     out: list[str] = []
     below = [name]
     while below:
@@ -153,7 +153,7 @@ class PlanError(CaparError):
 
 
 def moved_with(scene: Scene, name: str, place: tuple[float, float, float], heading: float) -> Scene:
-    """The scene with a thing elsewhere, and what goes with it as it was beside it."""
+    """The scene with an object elsewhere, and what goes with it as it was beside it."""
     old = scene.thing(name)
     changed = moved(scene, name, place, heading)
     by = changed.thing(name).pose * old.pose.inv()
@@ -165,7 +165,7 @@ def moved_with(scene: Scene, name: str, place: tuple[float, float, float], headi
 
 
 def resized_with(scene: Scene, name: str, factor: float) -> Scene:
-    """The scene with a thing of another size, and what goes with it likewise."""
+    """The scene with an object of another size, and what goes with it likewise."""
     old = scene.thing(name)
     changed = resized(scene, name, factor)
     for rider in _riders(scene, name):
@@ -193,7 +193,7 @@ from their places along each axis [m]."""
 
 ATTEMPTS = 200
 APART_M = 0.02
-"""How far drawn things are apart at least [m]."""
+"""How far drawn objects are apart at least [m]."""
 
 KEYS = {"position", "turn_deg", "size", "raise_m"}
 STANCE_KEYS = {"place", "heading_deg", "floor_m"}
@@ -267,10 +267,10 @@ def _standing(path: Path, scene: Scene, stance: dict[str, Any], where: str) -> S
 
 
 def drawn_scene(scene: Scene, rng: np.random.Generator) -> Scene:
-    """A scene with other sizes and places, its first fixed thing as high as a table may be.
+    """A scene with other sizes and places, its first fixed object as high as a table may be.
 
     What bears a door or a drawer is drawn with it, in size and place, and as much higher or lower;
-    things that a hand takes together are drawn as one.
+    objects that a hand takes together are drawn as one.
     """
     for name in mobile(scene):
         if name not in scene.together:

@@ -18,7 +18,7 @@ PALM_COST = (150.0, 10.0)
 """Weights of a metre and of a radian at the palms: so that balance does not cost a millimetre."""
 
 HEAD_COST = (150.0, 20.0)
-"""Likewise of the head while a thing is at it."""
+"""Likewise of the head while an object is at it."""
 
 FREE_PALM = (0.27, 0.1)
 """Shares of a palm's weights while its hand is free: how it is turned then is only a wish [1]."""
@@ -132,7 +132,7 @@ class Solver:
         self.looks = look_tasks()
         self.home = {side: vectors(self.palm(side)) for side in SIDES}
         self.turning = 1.0
-        """Share of its weight that the way has in which a palm is turned [1]."""
+        """Share of its weight that the path has in which a palm is turned [1]."""
 
         self.goals = {side: pose[4:] for side, pose in self.home.items()}
         self.ease = mink.PostureTask(human.model, cost=share_costs(human, EASE_COST))

@@ -21,23 +21,23 @@ from capar.model.facts import Displaced, Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
 from capar.regeneration.holds import (
-    Companion,
-    Launch,
-    Ride,
-    Toss,
-    companions_of,
+    CoHeld,
+    Load,
+    Release,
+    Throw,
+    co_held_of,
     holds_of,
-    launches_of,
+    leanings_of,
+    loads_of,
     meetings_of,
-    poises_of,
-    rides_of,
+    releases_of,
     with_blows,
     with_touches,
     with_unseen_ends,
 )
 from capar.regeneration.holds import Hold as Hold
+from capar.regeneration.holds import Leaning as Leaning
 from capar.regeneration.holds import Meeting as Meeting
-from capar.regeneration.holds import Poise as Poise
 from capar.regeneration.scenes import PlanError, Scene
 
 SAMPLES = 5000
@@ -157,14 +157,14 @@ STANDS_M = 0.5
 """While a head stays within this, its bearer is taken to stand [m]."""
 
 LAUNCH_FRAMES = 3
-"""A thing may be seen to move so long before the frame of the blow: filters blur it [1]."""
+"""An object may be seen to move so long before the frame of the blow: filters blur it [1]."""
 
 FACED_M = 0.02
 """Points of a surface that are further from a hand's middle than the nearest by no more than this
 are faced by its palm [m]."""
 
 MOVES_M, MOVES_RAD = 0.02, float(np.radians(10.0))
-"""A thing that never goes or turns further does not move [m, rad]."""
+"""An object that never goes or turns further does not move [m, rad]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,22 +201,22 @@ class Source:
 
     holds: tuple[Hold, ...]
     meetings: tuple[Meeting, ...]
-    poises: tuple[Poise, ...]
+    leanings: tuple[Leaning, ...]
     notes: tuple[str, ...]
-    launches: tuple[Launch, ...] = ()
-    """Things that a hand set going, after which they moved on alone."""
+    releases: tuple[Release, ...] = ()
+    """Objects that a hand set going, after which they moved on alone."""
 
-    tosses: tuple[Toss, ...] = ()
-    """Things that fly from one hold to the next."""
+    throws: tuple[Throw, ...] = ()
+    """Objects that fly from one hold to the next."""
 
     others: tuple[Hold, ...] = ()
-    """When other performers hold things."""
+    """When other performers hold objects."""
 
-    rides: tuple[Ride, ...] = ()
-    """What held things bear."""
+    loads: tuple[Load, ...] = ()
+    """What held objects bear."""
 
-    companions: tuple[Companion, ...] = ()
-    """What lies in a hand beside another thing."""
+    co_held: tuple[CoHeld, ...] = ()
+    """What lies in a hand beside another object."""
 
     pace: float = 1.0
     """How many times as long everything takes as it did [1]."""
@@ -227,13 +227,13 @@ class Source:
         return np.asarray(self.capture.times * self.pace)
 
     @property
-    def carried(self) -> tuple[Hold | Ride | Toss, ...]:
-        """When things may move: somebody holds them, something bears them, or they fly."""
-        return (*self.holds, *self.others, *self.rides, *self.tosses)
+    def carried(self) -> tuple[Hold | Load | Throw, ...]:
+        """When objects may move: somebody holds them, something bears them, or they fly."""
+        return (*self.holds, *self.others, *self.loads, *self.throws)
 
     @property
     def met(self) -> frozenset[str]:
-        """Names of the things that meet the performer's head."""
+        """Names of the objects that meet the performer's head."""
         return frozenset(meeting.thing for meeting in self.meetings)
 
     @property
@@ -262,13 +262,13 @@ def source_of(
         floor_m: Height of the floor [m].
         axes: Which way hands point and face, by side; by their shapes and what they touch,
             unless stated.
-        notes: What is to be told of it.
+        notes: What is to be reported of it.
         cutoff_hz: Of the filter that takes noise from paths [Hz]; None leaves them as recorded.
         checked: Whether it is refused if the performer walks, or something moves that no hand holds
             or set going; what several performers do is checked when all of it is known.
 
     Raises:
-        PlanError: It is not known where the performer stands, a hand or thing has no shape, or it
+        PlanError: It is not known where the performer stands, a hand or object has no shape, or it
             is refused when checked.
     """
     human = Human.of(measures_of(capture.agent))
@@ -294,8 +294,8 @@ def source_of(
     displaced = [fact for fact in observation.facts if isinstance(fact, Displaced)]
     holds = with_touches(holds, tracks_of_hands, touching, displaced, capture.times)
     sides = {hand.sensor: side for side, hand in hands.items()}
-    launches, tosses = launches_of(observation.forces, sides, holds, capture.times, paths)
-    holds = with_blows(holds, launches)
+    releases, throws = releases_of(observation.forces, sides, holds, capture.times, paths)
+    holds = with_blows(holds, releases)
     meetings = meetings_of(capture, eyes, paths, touching)
     entered = _entered(capture, holds, hands, touching)
     told += [
@@ -303,17 +303,17 @@ def source_of(
         for name in sorted(entered)
     ]
     sensors = {side: hand.sensor for side, hand in hands.items()}
-    poises = poises_of(observation, sensors, things, holds)
+    leanings = leanings_of(observation, sensors, things, holds)
     fastened = {guide.object: guide.base for guide in observation.guides if guide.object in things}
-    companions = companions_of(holds, paths)
-    together = {each.hold.thing: each.lead.thing for each in companions}
+    co_held = co_held_of(holds, paths)
+    together = {each.hold.thing: each.lead.thing for each in co_held}
     scene = Scene(
         things, place, heading, floor_m, entered=entered, fastened=fastened, together=together
     )
     made = Source(
         capture, observation, human, scene,
-        hands, paths, eyes, holds, meetings, poises, tuple(told), launches, tosses,
-        rides=rides_of(paths, holds, touching), companions=companions,
+        hands, paths, eyes, holds, meetings, leanings, tuple(told), releases, throws,
+        loads=loads_of(paths, holds, touching), co_held=co_held,
     )  # fmt: skip
     if checked:
         check_source(made)
@@ -332,10 +332,10 @@ def check_source(source: Source) -> None:
 
 
 def scene_of(capture: Capture, human: Human) -> Scene:
-    """The things of a capture where they are at the beginning, and where the performer stands.
+    """The objects of a capture where they are at the beginning, and where the performer stands.
 
     Raises:
-        PlanError: A thing has no shape, or there is no sensor of the head.
+        PlanError: An object has no shape, or there is no sensor of the head.
     """
     place, heading = _stance(human, _eyes(capture))
     objects = [each for each in capture.objects if each.tag is not TagType.SELF]
@@ -349,7 +349,7 @@ def eyes_in_body(human: Human) -> Float[np.ndarray, "3"]:
 
 
 def moves(path: RigidTransform) -> bool:
-    """Whether a thing goes or turns far enough from where it is at first."""
+    """Whether an object goes or turns far enough from where it is at first."""
     gone = np.linalg.norm(path.translation - path.translation[0], axis=1)
     turned = (path.rotation * path.rotation[0].inv()).magnitude()
     return bool(gone.max() >= MOVES_M or turned.max() >= MOVES_RAD)
@@ -393,7 +393,7 @@ def _stance(human: Human, eyes: RigidTransform) -> tuple[tuple[float, float], fl
 
 
 def _thing(each: TagObject, path: RigidTransform) -> tuple[Thing, RigidTransform]:
-    """The thing with an upright frame, and its path."""
+    """The object with an upright frame, and its path."""
     if each.shape is None:
         raise PlanError(f"object {each.name!r} has no shape; give it a mesh or a box")
     count = len(path) if each.tag is TagType.FIXED else START_FRAMES
@@ -464,7 +464,7 @@ def _entered(
     hands: Mapping[str, HandTrack],
     touching: list[Touching],
 ) -> frozenset[str]:
-    """Assumed things that a hand touched while it held another: they cannot be as assumed."""
+    """Assumed objects that a hand touched while it held another: they cannot be as assumed."""
     assumed = {each.name for each in capture.objects if each.assumed}
     return frozenset(
         contact.other
@@ -493,7 +493,7 @@ def _check_stands(source: Source) -> None:
 
 
 def _longest_stand(spots: Float[np.ndarray, "frames 2"]) -> tuple[int, int]:
-    """First and last frame of the longest stretch whose places are all near each other."""
+    """First and last frame of the longest interval whose places are all near each other."""
     best, first = (0, 0), 0
     for last in range(len(spots)):
         while np.linalg.norm(spots[first : last + 1] - spots[last], axis=1).max() > STANDS_M:
@@ -509,7 +509,7 @@ def _check_movers(source: Source, touching: list[Touching]) -> None:
         for carried in source.carried:
             if carried.thing == name:
                 held[carried.first : carried.last + 1] = True
-        for launch in source.launches:
+        for launch in source.releases:
             if launch.thing == name:
                 held[max(launch.frame - LAUNCH_FRAMES, 0) :] = True
         moved = np.linalg.norm(path.translation - path.translation[0], axis=1)

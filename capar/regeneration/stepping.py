@@ -67,7 +67,7 @@ class Stepping:
 
     human: Human
     scene: Scene
-    """Where it stands at first, and the things."""
+    """Where it stands at first, and the objects."""
 
     goal: Place
     """Where it stands in the end [m]."""

@@ -15,19 +15,19 @@ from capar.regeneration.sources import Hold, Meeting, Source
 
 
 class Kind(StrEnum):
-    """What of a recorded way is kept."""
+    """What of a recorded path is kept."""
 
     PATH = "path"
-    """Its shape in metres beside the straight way, and its timing."""
+    """Its shape in metres beside the straight path, and its timing."""
 
     FRAME = "frame"
-    """Its shape, turned and enlarged with the way as a whole, and its timing."""
+    """Its shape, turned and enlarged with the path as a whole, and its timing."""
 
     VEL = "vel"
-    """Its timing only: the straight way (VelStyle alone)."""
+    """Its timing only: the straight path (VelStyle alone)."""
 
     EVEN = "even"
-    """Nothing: the straight way with minimum jerk."""
+    """Nothing: the straight path with minimum jerk."""
 
 
 def style_kind(name: str) -> Kind:
@@ -47,7 +47,7 @@ SHORTEST_S = 0.15
 
 @dataclass(frozen=True, eq=False)
 class Style:
-    """The ways of hands and things that are led to new ends."""
+    """The paths of hands and objects that are led to new ends."""
 
     kind: Kind
     hands: Mapping[str, RigidTransform]
@@ -60,7 +60,7 @@ class Style:
     """Of whom it is borrowed; empty for the recorded performer's own."""
 
     force: ForceKind = ForceKind.SIMILAR
-    """What of a force that sets things going is kept."""
+    """What of a force that sets objects going is kept."""
 
 
 def own_style(source: Source, kind: Kind = Kind.PATH) -> Style:
@@ -70,7 +70,7 @@ def own_style(source: Source, kind: Kind = Kind.PATH) -> Style:
 
 
 def borrowed_style(source: Source, other: Source, kind: Kind = Kind.PATH) -> Style:
-    """The style of another recording of the same: its ways and timing between the same events.
+    """The style of another recording of the same: its paths and timing between the same events.
 
     Raises:
         PlanError: Other hands do something, or in another order.
@@ -111,7 +111,7 @@ def _spans(source: Source) -> list[Hold | Meeting]:
 
 
 def _steps(source: Source) -> list[tuple[str, ...]]:
-    """What holds and meetings there are, in order, whatever the things are called."""
+    """What holds and meetings there are, in order, whatever the objects are called."""
     order = _moved(source)
     holds = [(h.first, "hold", h.side, str(_number(order, h.thing))) for h in source.holds]
     meetings = [(m.first, "meet", m.part, str(_number(order, m.thing))) for m in source.meetings]
@@ -119,7 +119,7 @@ def _steps(source: Source) -> list[tuple[str, ...]]:
 
 
 def _moved(source: Source) -> list[str]:
-    """Names of held things in the order in which they are taken."""
+    """Names of held objects in the order in which they are taken."""
     return list(dict.fromkeys(hold.thing for hold in source.holds))
 
 
@@ -213,10 +213,10 @@ def replayed(
 
 
 SHORT_M = 0.05
-"""A shorter way from start to goal has no direction of its own [m]."""
+"""A shorter path from start to goal has no direction of its own [m]."""
 
 SMALLEST_M = 1e-6
-"""Added to the way of every frame, so that time is a function of the way [m]."""
+"""Added to the path of every frame, so that time is a function of the path [m]."""
 
 
 NOWHERE = (np.zeros(3), np.zeros(3))
@@ -246,10 +246,10 @@ class Detour:
         shares: Float[np.ndarray, "frames"],
         away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = NOWHERE,
     ) -> Float[np.ndarray, "frames 3"]:
-        """The added displacement at shares of the way [m].
+        """The added displacement at shares of the path [m].
 
         Args:
-            shares: Of the way [1].
+            shares: Of the path [1].
             away: Directions off what is left at the start and off what is reached at the goal.
         """
         bump = 4.0 * shares * (1.0 - shares)
@@ -268,7 +268,7 @@ def way(positions: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]
 
 
 def arc_shares(positions: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
-    """Share of the way covered at each frame: VelStyle of the path (thesis eq. 4.1) [1]."""
+    """Share of the path covered at each frame: VelStyle of the path (thesis eq. 4.1) [1]."""
     covered = way(positions)
     return np.asarray(covered / covered[-1])
 
@@ -285,14 +285,14 @@ def mapped(
 ) -> RigidTransform:
     """A path with other ends.
 
-    What deviates from the straight way is kept in metres and turned with the way; the share of
+    What deviates from the straight path is kept in metres and turned with the path; the share of
     the path's length that is covered at each frame stays the same.
 
     Args:
         path: As it was recorded; the last frame is the goal's.
         start: Where the new one begins.
         goal: Where it ends.
-        turn: How far the deviations are turned about z where the way has no direction [rad].
+        turn: How far the deviations are turned about z where the path has no direction [rad].
         detour: What is added between the ends.
         away: Directions in which a detour draws off, at the start and at the goal.
         kind: What of the path is kept.
@@ -318,7 +318,7 @@ def mapped(
 
 
 def minimum_jerk(frames: int) -> Float[np.ndarray, "frames"]:
-    """Shares of the way with the least jerk (Flash & Hogan 1985) [1]."""
+    """Shares of the path with the least jerk (Flash & Hogan 1985) [1]."""
     s = np.linspace(0.0, 1.0, frames)
     return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s * s))
 
@@ -331,7 +331,7 @@ def _in_frames(
     new: Float[np.ndarray, "3"],
     usual: Float[np.ndarray, "frames 3"],
 ) -> Float[np.ndarray, "frames 3"]:
-    """What deviates from the straight way in the frame of object and hand; as usual without one."""
+    """What deviates from the straight path in the frame of object and hand; as usual without one."""
     try:
         before, after = frame_between(old[-1], old[0]), frame_between(goal, start)
     except CoordinateError:
@@ -342,14 +342,14 @@ def _in_frames(
 def _along(
     old: Float[np.ndarray, "frames 3"], shares: Float[np.ndarray, "frames"]
 ) -> Float[np.ndarray, "frames"]:
-    """How far along the straight way each frame is; by the path's length where that is short."""
+    """How far along the straight path each frame is; by the path's length where that is short."""
     chord = old[-1] - old[0]
     length = float(np.linalg.norm(chord))
     return np.asarray((old - old[0]) @ chord / length**2) if length > SHORT_M else shares
 
 
 def _turn(old: Float[np.ndarray, "3"], new: Float[np.ndarray, "3"], usual: float) -> float:
-    """How far the way has turned about z [rad]."""
+    """How far the path has turned about z [rad]."""
     if min(np.hypot(*old[:2]), np.hypot(*new[:2])) < SHORT_M:
         return usual
     return float(np.arctan2(new[1], new[0]) - np.arctan2(old[1], old[0]))

@@ -20,7 +20,7 @@ from capar.model.capture import Capture, Shape
 from capar.pipelines.round_trips import body, observed_source, round_trip
 from capar.regeneration import Source
 from capar.regeneration.collisions import inner_gap
-from capar.regeneration.holds import FRICTION, Ride, steadiness, with_riders
+from capar.regeneration.holds import FRICTION, Load, steadiness, with_loads
 from capar.regeneration.scenes import raised, resized, stack
 
 RATE_HZ = 30.0
@@ -38,7 +38,7 @@ def _source() -> Source:
 
 def test_a_mug_on_a_tray_that_both_hands_carry_rides_on_it() -> None:
     source = _source()
-    (ride,) = source.rides
+    (ride,) = source.loads
     assert (ride.thing, ride.bearer) == ("mug", "tray")
     assert ride.first == min(hold.first for hold in source.holds)
 
@@ -111,7 +111,7 @@ def _full_box() -> Capture:
 
 def test_what_is_in_an_open_box_goes_along_and_cuts_no_wall() -> None:
     source = observed_source(_full_box())
-    assert {(ride.thing, ride.bearer) for ride in source.rides} == {
+    assert {(ride.thing, ride.bearer) for ride in source.loads} == {
         ("mug", "open_box"),
         ("block", "open_box"),
     }
@@ -143,8 +143,8 @@ def test_what_is_on_what_is_borne_goes_along_too() -> None:
         "plate": RigidTransform.from_translation([[0.0, 0.05, 0.03]] * 5),
         "mug": RigidTransform.from_translation([[0.0, 0.05, 0.05]] * 5),
     }
-    rides = (Ride("plate", "tray", 1, 3), Ride("mug", "plate", 1, 3))
-    out = with_riders(paths, rides)
+    loads = (Load("plate", "tray", 1, 3), Load("mug", "plate", 1, 3))
+    out = with_loads(paths, loads)
     np.testing.assert_allclose(out["mug"].translation[0], [0.0, 0.05, 0.05])
     np.testing.assert_allclose(
         out["mug"].translation[3] - out["mug"].translation[1], ride[3] - ride[1]

@@ -9,7 +9,7 @@ from scipy.spatial.transform import RigidTransform
 from capar.body.scripted_actions import action_capture
 from capar.pipelines.round_trips import body, observed_source, round_trip
 from capar.regeneration import PlanError, Source
-from capar.regeneration.holds import Hold, companions_of
+from capar.regeneration.holds import Hold, co_held_of
 from capar.regeneration.planning import reachable
 from capar.regeneration.scenes import drawn_scene, moved, raised, resized_with
 
@@ -27,7 +27,7 @@ def test_two_things_in_one_palm_are_observed_as_held_by_one_hand() -> None:
     steps = [s for s in _source().observation.segments if s.ee == "right_hand"]
     both = {step.name for step in steps if set(step.objects) >= {"carton", "tin"}}
     assert {"Reach", "Lift", "Carry", "Lower", "Withdraw"} <= both
-    (companion,) = _source().companions
+    (companion,) = _source().co_held
     assert (companion.hold.thing, companion.lead.thing) == ("tin", "carton")
 
 
@@ -81,4 +81,4 @@ def test_a_hand_that_moves_one_of_two_alone_is_refused() -> None:
     holds = Hold("right", "cup", 0, 5), Hold("right", "spoon", 2, 5)
     paths = {"cup": _way(0.0, 0.1, 0.1, 0.2, 0.3, 0.3), "spoon": _way(0.1, 0.1, 0.1, 0.2, 0.3, 0.3)}
     with pytest.raises(PlanError, match="'cup' by 100 mm without the other"):
-        companions_of(holds, paths)
+        co_held_of(holds, paths)

@@ -20,11 +20,11 @@ from capar.regeneration.goals import (
     RAIL,
     Constraint,
     constraints_of,
+    object_goals,
     planes_of,
     scene_constraints,
-    thing_goals,
 )
-from capar.regeneration.paths import thing_paths
+from capar.regeneration.paths import object_paths
 from capar.regeneration.scenes import Scene, mobile, raised, read_scene
 from capar.regeneration.styles import own_style
 
@@ -38,8 +38,8 @@ def _source(action: str) -> Source:
 
 def _planned(source: Source, scene: Scene, name: str) -> RigidTransform:
     old, new = body_frames(source.human, source.scene), body_frames(source.human, scene)
-    goals = thing_goals(source, scene, old, new)
-    return thing_paths(source, scene, goals, source.human, own_style(source)).paths[name]
+    goals = object_goals(source, scene, old, new)
+    return object_paths(source, scene, goals, source.human, own_style(source)).paths[name]
 
 
 def _constraint(kind: str) -> Constraint:

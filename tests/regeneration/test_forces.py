@@ -32,7 +32,7 @@ def _done(agent: str, kind: ForceKind) -> tuple[Motion, Quality]:
 
 def _alone(motion: Motion) -> np.ndarray:
     """The crate's places from the blow on, from where it was [m]."""
-    (launch,) = motion.plan.source.launches
+    (launch,) = motion.plan.source.releases
     spots = motion.plan.things[launch.thing].translation[launch.frame :]
     return np.asarray(spots - spots[0])
 
@@ -93,7 +93,7 @@ def test_the_same_motion_takes_a_faster_hand(agent: str) -> None:
     motion, found = _done(agent, ForceKind.SAME)
     assert found.passed, found.failed
     recorded = _source().paths["crate"].translation
-    (launch,) = motion.plan.source.launches
+    (launch,) = motion.plan.source.releases
     np.testing.assert_allclose(_alone(motion)[-1], recorded[-1] - recorded[launch.frame], atol=0.01)
     slower, _ = _done(agent, ForceKind.SIMILAR)
 

@@ -18,15 +18,15 @@ from capar.model.capture import TagType
 from capar.pipelines.instantiation import Asked, Instance, Knowledge, instantiate
 from capar.pipelines.preparation import (
     Problem,
-    Way,
+    Procedure,
     World,
     asserted,
     measured_world,
     prepare,
     problem_of,
+    procedures_of,
     shortest,
     unmet,
-    ways_of,
 )
 from capar.pipelines.recordings import observed_recording
 from capar.pipelines.round_trips import observed_source
@@ -54,9 +54,9 @@ def _instance(action: str, scene: Scene | None = None) -> Instance:
     return instantiate(asked, recording, source, Knowledge(_kinds, lambda _: ()))
 
 
-def _ways(*actions: str) -> tuple[Way, ...]:
+def _ways(*actions: str) -> tuple[Procedure, ...]:
     recordings = [observed_recording(_source(one).observation, Path(one)) for one in actions]
-    return ways_of(recordings, lambda recording: _source(recording.name))
+    return procedures_of(recordings, lambda recording: _source(recording.name))
 
 
 def _beside(scene: Scene, tag: TagType = TagType.MOBILE) -> Scene:
@@ -76,7 +76,7 @@ def test_nothing_has_to_be_prepared_for_an_action_in_the_scene_in_which_it_was_r
 ) -> None:
     source = _source(action)
 
-    def unopened() -> tuple[Way, ...]:
+    def unopened() -> tuple[Procedure, ...]:
         raise AssertionError
 
     made = prepare(_instance(action), measured_world(source), _kinds, unopened)

@@ -66,7 +66,7 @@ def test_a_mug_is_emptied_over_the_bowl_wherever_that_stands(number: int) -> Non
     apart = np.array(bowl.place[:2]) - source.scene.thing("bowl").place[:2]
     assert np.linalg.norm(apart) > 0.02
     draft = reachable(source, scene, body("man", source))
-    (poise,) = source.poises
+    (poise,) = source.leanings
     mug = draft.things["mug"][poise.lowest].apply(np.array(scene.thing("mug").shape.vertices))
     opening = np.asarray(bowl.place) + bowl.size * [0.0, 0.0, 1.0]
     lip = mug[np.argmin(np.linalg.norm(mug - opening, axis=1))]

@@ -13,8 +13,8 @@ from capar.regeneration import Motion, PlanError, Source, planning
 from capar.regeneration.body_frames import body_frames
 from capar.regeneration.efforts import read_effort, regenerate_in_manner
 from capar.regeneration.forces import ForceKind, end_velocity, flight_faults
-from capar.regeneration.goals import thing_goals
-from capar.regeneration.holds import launches_of
+from capar.regeneration.goals import object_goals
+from capar.regeneration.holds import releases_of
 from capar.regeneration.planning import (
     reachable,
 )
@@ -39,14 +39,14 @@ def _trip(agent: str) -> Trip:
 
 def _flown(motion: Motion) -> np.ndarray:
     """Where the mug is from the frame in which it is let go to the one in which it is caught."""
-    (toss,) = motion.plan.source.tosses
+    (toss,) = motion.plan.source.throws
     return np.asarray(motion.plan.things["mug"].translation[toss.first : toss.last + 1])
 
 
 def test_a_recording_says_from_which_hand_to_which_it_flies() -> None:
-    (toss,) = _source().tosses
+    (toss,) = _source().throws
     assert (toss.thing, toss.side, toss.catcher) == ("mug", "right", "left")
-    assert not _source().launches
+    assert not _source().releases
     throwing, catching = _source().holds
     assert (throwing.last, catching.first) == (toss.first, toss.last)
 
@@ -69,12 +69,12 @@ def test_only_gravity_moves_it_between_the_hands_of_a_child() -> None:
 def test_a_child_throws_less_far_in_proportion_or_as_far_with_the_same_motion() -> None:
     source, child = _source(), body("child", _source())
     old, new = body_frames(source.human, source.scene), body_frames(child, source.scene)
-    (toss,) = source.tosses
+    (toss,) = source.throws
     spots = source.paths["mug"].translation
     gone = spots[toss.last] - spots[toss.first]
     ways, ends = {}, {}
     for kind in ForceKind:
-        goals = thing_goals(source, source.scene, old, new, kind)["mug"]
+        goals = object_goals(source, source.scene, old, new, kind)["mug"]
         places = {goal.frame: goal.pose.translation for goal in goals}
         ways[kind] = places[toss.last] - places[toss.first]
         ends[kind] = places[goals[-1].frame] - places[toss.last]
@@ -87,7 +87,7 @@ def test_a_child_throws_less_far_in_proportion_or_as_far_with_the_same_motion() 
 def test_a_hand_that_is_at_rest_does_not_throw() -> None:
     motion = _trip("man").motion
     assert motion is not None
-    (toss,) = motion.plan.source.tosses
+    (toss,) = motion.plan.source.throws
     stiff = motion.postures.copy()
     stiff[toss.first - 6 : toss.first + 1] = stiff[toss.first]
     gate = quality(replace(motion, postures=stiff)).gate("flight speed")
@@ -115,7 +115,7 @@ def test_the_velocity_at_the_end_of_a_parabola_is_exact() -> None:
 def test_what_does_not_fly_freely_to_a_hand_is_refused() -> None:
     source = _source()
     sides = {hand.sensor: side for side, hand in source.hands.items()}
-    (toss,) = source.tosses
+    (toss,) = source.throws
     spots = source.paths["mug"].translation.copy()
     spots[toss.first : toss.last + 1] = np.linspace(
         spots[toss.first], spots[toss.last], toss.last - toss.first + 1
@@ -123,11 +123,11 @@ def test_what_does_not_fly_freely_to_a_hand_is_refused() -> None:
     path = RigidTransform.from_components(spots, source.paths["mug"].rotation)
     forces, holds = source.observation.forces, source.holds
     with pytest.raises(PlanError, match="otherwise than in free flight"):
-        launches_of(forces, sides, holds, source.times, {"mug": path})
+        releases_of(forces, sides, holds, source.times, {"mug": path})
     alone = tuple(hold for hold in holds if hold.side == "right")
-    launches, tosses = launches_of(forces, sides, alone, source.times, source.paths)
-    assert [launch.thing for launch in launches] == ["mug"]
-    assert tosses == ()
+    releases, throws = releases_of(forces, sides, alone, source.times, source.paths)
+    assert [launch.thing for launch in releases] == ["mug"]
+    assert throws == ()
 
 
 def test_what_a_child_cannot_throw_is_refused_with_what_fails_and_what_would_do(
