@@ -269,8 +269,8 @@ def _within(thing: Thing, pose: RigidTransform, support: Thing) -> bool:
 
 
 Condition = tuple[str, ...]
-"""``touch`` with a hand and an object, ``free`` with a hand, ``stand`` with an object and its support,
-``clear`` with the object whose goal it is, or ``bare`` with an object."""
+"""``touch`` with a hand and an object, ``free`` with a hand, ``stand`` with an object and its
+support, ``clear`` with the object whose goal it is, or ``bare`` with an object."""
 
 Touching = frozenset[tuple[str, str]]
 """Hands, by their sides, with the objects that they touch."""

@@ -128,7 +128,7 @@ class Surroundings:
         return distance_m < 0.0 and self.hollow[name] is not None
 
     def things_near(self) -> list[Pair]:
-        """Distances between objects near each other, but for what is on a hinge or a rail of one."""
+        """Distances between objects near each other, but for those on a hinge or a rail."""
         names = sorted(self.geoms)
         out = []
         for number, first in enumerate(names):
@@ -149,7 +149,7 @@ class Surroundings:
         return float(mujoco.mj_geomDistance(self.model, self.data, first, second, NEAR_M, None))
 
     def _apart(self, geom: int, name: str, most_m: float) -> float:
-        """How far the surface of a hollow object is from a part, negative where it is inside [m]."""
+        """How far a hollow object's surface is from a part, negative where it is inside [m]."""
         points = self._surface(geom, name, most_m)
         return float(_depths(points, self.model, geom).min()) if len(points) else most_m
 

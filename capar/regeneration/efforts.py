@@ -153,7 +153,7 @@ PAUSE = 0.12
 """Bound flow pauses for so long at an end of a interval [1, of its time]."""
 
 OVERSHOOT, SETTLES = 0.08, 0.3
-"""Free flow goes so far beyond a free end [1, of the path] and needs so long for it [1, of time]."""
+"""Free flow goes so far beyond a free end [1, of the path], for so long [1, of the time]."""
 
 BULGE, LIFT = 0.15, 0.08
 """Indirect space leads so far aside, light weight so high half-way [1, of the straight path]."""
@@ -258,7 +258,7 @@ ARM_M = 0.1
 """A turn of one radian counts as so long a path [m]."""
 
 SLOWLY = 0.1
-"""Where a hand is slower than this share of its highest speed a step's border parts its path [1]."""
+"""A step's border parts the path of a hand slower than this share of its highest speed [1]."""
 
 OFF_M = 0.05
 """An object that is so far above where it is taken and put down may go another way [m]."""

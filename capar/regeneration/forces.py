@@ -23,7 +23,7 @@ class ForceKind(StrEnum):
     """What is the same on another body."""
 
     SIMILAR = "similar"
-    """The force, in proportion to the arm and its speed; the object goes as far as that takes it."""
+    """The force, in proportion to the arm and its speed, and what follows from it."""
 
     SAME = "same"
     """The object's motion; the hand strikes as fast as that takes."""
@@ -295,7 +295,7 @@ def caught_pose(
 def with_throws(source: Source, scene: Scene, name: str, path: RigidTransform) -> RigidTransform:
     """The path of an object with its flights, and hands' swings that have the flights' velocities.
 
-    A swing is changed by (u^3 - u^2) T dv before the object is let go, and by u (1 - u)^2 T dv after
+    A swing is changed by (u^3 - u^2) T dv before the release, and by u (1 - u)^2 T dv after
     it is caught, so that it keeps its ends and its other velocity.
     """
     own = [toss for toss in source.throws if toss.thing == name]

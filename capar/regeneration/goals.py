@@ -132,7 +132,7 @@ def guided_poses(
     recorded: RigidTransform,
     spans: list[tuple[int, int]],
 ) -> RigidTransform:
-    """``T_world_thing`` at every frame of an object on a hinge or a rail, on its own line throughout.
+    """``T_world_thing`` at every frame of an object on a hinge or a rail, on its own line.
 
     It turns by the recorded angles, or goes as far in its own measures; while nobody holds it, it
     stays.

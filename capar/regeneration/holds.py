@@ -39,7 +39,7 @@ SLID = 2.0
 """Multiple of both by which a hand may slide before the object leaves and after it arrived [1]."""
 
 UNSEEN_S = 1.0
-"""So long a hand that touches an object from the first frame on may slide before it holds it [s]."""
+"""A hand that touches an object at the first frame may slide so long before it holds it [s]."""
 
 STEP_S, TOUCHES_S = 0.15, 0.2
 """A hand that touches an object at rest for the first of these before that moves, or after, is seen
@@ -345,7 +345,7 @@ def releases_of(
 
 
 def _flies(toss: Throw, times: Float[np.ndarray, "frames"], path: RigidTransform) -> bool:
-    """Whether an object is near the parabola of gravity from where it is let go to where it is taken.
+    """Whether an object is near the parabola of gravity from its release to its catch.
 
     Any such object is for a moment: with two frames between, it is not known.
     """

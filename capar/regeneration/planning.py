@@ -377,7 +377,7 @@ class Draft:
     def deepest_cut(
         self, posture: Float[np.ndarray, "posture"], grips: list[Grip], frame: int
     ) -> Pair | None:
-        """The part of the body that is deepest inside an object, but for hands in what they hold."""
+        """The part of the body deepest inside an object, but for hands in what they hold."""
         around = self.gripping.around
         around.pose(posture, {name: path[frame] for name, path in self.things.items()})
         held = {(g.hold.side, g.hold.thing) for g in grips}

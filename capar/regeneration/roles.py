@@ -105,8 +105,8 @@ def bind(
     """The object of a scene for every part.
 
     What is stated counts first; then a part that bears another one is taken by what that one's
-    object stands on; then the only object that can be moved, or is fixed, as the recorded one and is
-    nearest of kind. Where several are equally near, it is asked.
+    object stands on; then the only object that can be moved, or is fixed, like the recorded one
+    and is nearest of kind. Where several are equally near, it is asked.
 
     Raises:
         UnknownNameError: A stated part or object does not exist.

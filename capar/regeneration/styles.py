@@ -331,7 +331,7 @@ def _in_frames(
     new: Float[np.ndarray, "3"],
     usual: Float[np.ndarray, "frames 3"],
 ) -> Float[np.ndarray, "frames 3"]:
-    """What deviates from the straight path in the frame of object and hand; as usual without one."""
+    """What deviates from the straight path, in the frame of object and hand if there is one."""
     try:
         before, after = frame_between(old[-1], old[0]), frame_between(goal, start)
     except CoordinateError:
