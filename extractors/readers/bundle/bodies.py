@@ -1,8 +1,9 @@
 """Bodies and marker sets of files as poses over time in one world and on one clock."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -234,17 +235,13 @@ def check_span(
     low, high = np.quantile(points, [0.05, 0.95], axis=0)
     span = float(np.linalg.norm(high - low))
     if span > LARGEST_M or (span < SMALLEST_M and len(every) > 1):
-        likely = _likely_unit(span / unit_m)
+        units = ("m", "mm", *UNITS)  # the usual ones first
+        fitting = (name for name in units if 0.1 <= span / unit_m * UNITS[name] <= 20.0)
+        likely = next(fitting, "m")
         raise CaptureError(
             f"{path}: in this unit ({unit_m:g} m) the recording spans {span:.4g} m; people move "
             f'in a few metres. The unit is likely {likely!r}: state unit = "{likely}"'
         )
-
-
-def _likely_unit(span: float) -> str:
-    """The unit in which a span is one of a person at work; the usual ones first."""
-    fitting = [name for name in ("m", "mm", *UNITS) if 0.1 <= span * UNITS[name] <= 20.0]
-    return fitting[0] if fitting else "m"
 
 
 Files = Mapping[str, WorldRecording]
@@ -282,7 +279,12 @@ def find_body(entry: Tracked, files: Files) -> Body:
 
 def _carried(entry: Tracked, files: Files, patterns: list[str], offset: RigidTransform) -> Body:
     """What is recorded only through what it carries: the poses of several bodies, one at a time."""
-    names = [name for pattern in patterns for name in _fitting(pattern, files)]
+    known = sorted({name for file in files.values() for name in file.bodies})
+    names = [
+        name
+        for pattern in patterns
+        for name in [each for each in known if fnmatchcase(each, pattern)] or [pattern]
+    ]
     sources = [files[_file_of(entry, files, "body", name)] for name in names]
     streams = [source.bodies[name] for source, name in zip(sources, names, strict=True)]
     order = np.argsort([stream.times[0] for stream in streams])
@@ -297,12 +299,6 @@ def _carried(entry: Tracked, files: Files, patterns: list[str], offset: RigidTra
         np.concatenate([each.orientations for each in parts]),
     )
     return Body(offset_by(whole, offset), Frame(), conventions=sources[0].conventions)
-
-
-def _fitting(pattern: str, files: Files) -> list[str]:
-    """The bodies that a pattern with ``*`` fits; what fits none stands for itself."""
-    known = sorted({name for file in files.values() for name in file.bodies})
-    return [each for each in known if fnmatchcase(each, pattern)] or [pattern]
 
 
 def offset_by(stream: Stream, offset: RigidTransform) -> Stream:
@@ -352,8 +348,13 @@ def _from_markers(entry: Tracked, files: Files, names: list[str], offset: RigidT
     positions = np.where(wild[:, None], np.nan, fit.positions)
     stream = offset_by(Stream(recording.marker_times, positions, fit.orientations), offset)
     places = offset.inv().apply(cluster.local)
-    points_here = MeanPlaces(recording, stream, dict(zip(names, places, strict=True)))
-    frame = Frame(points=points_here, markers=tuple(names), mirrored=recording.mirrored)
+    own = dict(zip(names, places, strict=True))
+    frame = Frame(
+        names=(*recording.bodies, *recording.markers),
+        place=partial(_mean_place, recording, stream, own),
+        markers=tuple(names),
+        mirrored=recording.mirrored,
+    )
     wrong = notice("markers-not-rigid", label, frames=int(wild.sum()))
     return Body(stream, frame, (wrong,) if wild.any() else (), recording.conventions)
 
@@ -369,31 +370,28 @@ def _stated(entry: Tracked, names: list[str]) -> Cluster | None:
 
 
 def _own_frame(entry: Tracked, cluster: Cluster) -> Cluster:
-    """The arrangement in the frame that ``origin`` and ``axes`` state."""
+    """The arrangement in the frame that ``origin`` and ``axes`` state.
+
+    Of two axes from pairs of markers the first is kept, the second is made square to it.
+    """
     places = dict(zip(cluster.names, cluster.local, strict=True))
-    origin = [_place(entry, "origin", places, name) for name in entry.origin]
+
+    def place(key: str, name: str) -> Float[np.ndarray, "3"]:
+        if name not in places:
+            raise entry.unknown("marker", name, places, key)
+        return places[name]
+
+    origin = [place("origin", name) for name in entry.origin]
     centre = np.mean(origin, axis=0) if origin else np.zeros(3)
-    turn = _axes(entry, places) if entry.axes else Rotation.identity()
+    turn = Rotation.identity()
+    if entry.axes:
+        along, units = [], []
+        for axis, (start, end) in entry.axes.items():
+            along.append(place("axes", end) - place("axes", start))
+            units.append(np.eye(3)["xyz".index(axis)])
+        stated = np.stack([each / np.linalg.norm(each) for each in along])
+        turn, _ = Rotation.align_vectors(stated, np.stack(units), weights=[np.inf, 1.0])
     return Cluster(cluster.names, turn.inv().apply(cluster.local - centre))
-
-
-def _axes(entry: Tracked, places: Mapping[str, Float[np.ndarray, "3"]]) -> Rotation:
-    """Axes from pairs of markers: the first is kept, the second is made square to it."""
-    ways, units = [], []
-    for axis, (start, end) in (entry.axes or {}).items():
-        way = _place(entry, "axes", places, end) - _place(entry, "axes", places, start)
-        ways.append(way / np.linalg.norm(way))
-        units.append(np.eye(3)["xyz".index(axis)])
-    turn, _ = Rotation.align_vectors(np.stack(ways), np.stack(units), weights=[np.inf, 1.0])
-    return turn
-
-
-def _place(
-    entry: Tracked, key: str, places: Mapping[str, Float[np.ndarray, "3"]], name: str
-) -> Float[np.ndarray, "3"]:
-    if name not in places:
-        raise entry.unknown("marker", name, places, key)
-    return places[name]
 
 
 def skeleton_frame(recording: WorldRecording, name: str, stream: Stream) -> Frame:
@@ -407,7 +405,8 @@ def skeleton_frame(recording: WorldRecording, name: str, stream: Stream) -> Fram
         ),
     }
     return Frame(
-        points=MeanPlaces(recording, stream),
+        names=(*recording.bodies, *recording.markers),
+        place=partial(_mean_place, recording, stream, {}),
         bones=bones,
         joint=name,
         lengths=lambda first, second: _lengths(recording, first or name, second or name),
@@ -436,52 +435,22 @@ def _is_below(parents: Mapping[str, str], name: str, root: str) -> bool:
     return False
 
 
-class MeanPlaces(Mapping[str, Float[np.ndarray, "3"]]):
-    """Where a file's bodies and markers lie in one body's frame, in the mean, when asked for."""
-
-    def __init__(
-        self,
-        recording: WorldRecording,
-        stream: Stream,
-        own: Mapping[str, Float[np.ndarray, "3"]] | None = None,
-    ) -> None:
-        self._recording = recording
-        self._stream = stream
-        self._own = own or {}
-
-    def __iter__(self) -> Iterator[str]:
-        """Every body and marker of the file."""
-        return iter([*self._recording.bodies, *self._recording.markers])
-
-    def __len__(self) -> int:
-        """How many there are."""
-        return len(self._recording.bodies) + len(self._recording.markers)
-
-    def __contains__(self, name: object) -> bool:
-        """Whether the file has it; asked without computing."""
-        return name in self._recording.bodies or name in self._recording.markers
-
-    def __getitem__(self, name: str) -> Float[np.ndarray, "3"]:
-        """The place of one of them [m].
-
-        Raises:
-            CaptureError: It is never seen together with the body.
-        """
-        if name in self._own:
-            return self._own[name]
-        own, points = self._stream, self._points(name)
-        if len(points) != len(own.times):
-            raise CaptureError(f"{name!r} is on another clock than the body it shapes")
-        both = ~own.lost & ~np.isnan(points).any(axis=1)
-        if not both.any():
-            raise CaptureError(f"{name!r} is never seen together with the body it shapes")
-        poses = geometry.transforms(own.positions[both], own.orientations[both])
-        return np.asarray(poses.inv().apply(points[both]).mean(axis=0))
-
-    def _points(self, name: str) -> Float[np.ndarray, "frames 3"]:
-        if name in self._recording.bodies:
-            return self._recording.bodies[name].positions
-        return self._recording.markers[name]
+def _mean_place(
+    recording: WorldRecording, stream: Stream, own: Mapping[str, Float[np.ndarray, "3"]], name: str
+) -> Float[np.ndarray, "3"]:
+    """Where one of a file's bodies or markers lies in a body's frame, in the mean [m]."""
+    if name in own:
+        return own[name]
+    points = recording.markers.get(name)
+    if name in recording.bodies:
+        points = recording.bodies[name].positions
+    if points is None or len(points) != len(stream.times):
+        raise CaptureError(f"{name!r} is on another clock than the body it shapes")
+    both = ~stream.lost & ~np.isnan(points).any(axis=1)
+    if not both.any():
+        raise CaptureError(f"{name!r} is never seen together with the body it shapes")
+    poses = geometry.transforms(stream.positions[both], stream.orientations[both])
+    return np.asarray(poses.inv().apply(points[both]).mean(axis=0))
 
 
 GAP_S = Thresholds().gap_s
@@ -512,8 +481,10 @@ def resampled(
     """
     known = np.flatnonzero(~stream.lost)
     if not known.size:
-        return _lost(times)
-    if extend == "none" and _is_on(stream, times):
+        lost = np.full((len(times), 7), np.nan)
+        return Stream(times, lost[:, :3], lost[:, 3:])
+    same = len(times) == len(stream.times) and np.abs(times - stream.times).max() < SAME_S
+    if extend == "none" and same:
         return Stream(times, stream.positions, stream.orientations)  # what is lost stays so
     source = stream.times[known]
     wanted = np.clip(times, source[0], source[-1]) if extend == "rest" else times
@@ -524,19 +495,6 @@ def resampled(
     positions[near] = _positions(source, stream.positions[known], inside)
     orientations[near] = geometry.slerp(source, stream.orientations[known], inside)
     return Stream(times=times, positions=positions, orientations=orientations)
-
-
-def _is_on(stream: Stream, times: Float[np.ndarray, "frames"]) -> bool:
-    return len(times) == len(stream.times) and bool(np.abs(times - stream.times).max() < SAME_S)
-
-
-def _lost(times: Float[np.ndarray, "frames"]) -> Stream:
-    frames = len(times)
-    return Stream(
-        times=times,
-        positions=np.full((frames, 3), np.nan),
-        orientations=np.full((frames, 4), np.nan),
-    )
 
 
 def _near(

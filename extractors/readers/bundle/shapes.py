@@ -139,8 +139,11 @@ Described = tuple[np.ndarray, np.ndarray, str]
 class Frame:
     """What a shape may refer to in its body: points of the body's frame, and a skeleton."""
 
-    points: Mapping[str, Float[np.ndarray, "3"]] = field(default_factory=dict)
-    """Markers and other bodies, by name, in the body's frame [m]."""
+    names: tuple[str, ...] = ()
+    """Markers and other bodies of the file."""
+
+    place: Callable[[str], Float[np.ndarray, "3"]] = lambda _: np.zeros(3)
+    """Where one of them is in the body's frame [m]."""
 
     markers: tuple[str, ...] = ()
     """The names of the body's own markers."""
@@ -179,11 +182,6 @@ def build_shape(entry: Pose, frame: Frame) -> Shape:
     return Shape(vertices=vertices, faces=faces, source=source, description=description)
 
 
-def assumed(shape: Shape) -> Shape:
-    """The same shape, marked as assumed."""
-    return replace(shape, source=ShapeSource.ASSUMED)
-
-
 def _placed(entry: Pose, frame: Frame) -> Described:
     """A shape's corners in the body's frame, after its own pose, its faces and description."""
     vertices, faces, description = _MAKERS[type(entry).__name__](entry, frame)
@@ -201,7 +199,11 @@ def transform(pose: Pose | None) -> RigidTransform:
 def _mesh(entry: MeshShape, frame: Frame) -> Described:
     path = expanded(entry, "mesh")
     if not path.is_file():
-        raise entry.error("mesh", f"no mesh file {entry.mesh!r} ({path}).", _others(path))
+        remedy = f"There is no folder {path.parent}."
+        if path.parent.is_dir():
+            names = sorted(file.name for file in path.parent.iterdir())
+            remedy = f"The folder holds: {', '.join(names[:12])}"
+        raise entry.error("mesh", f"no mesh file {entry.mesh!r} ({path}).", remedy)
     vertices, faces = read_mesh(path)
     frame.sources.append(replace(source_of(path, "mesh"), path=entry.mesh))
     if edges := open_edges(vertices, faces):
@@ -209,18 +211,6 @@ def _mesh(entry: MeshShape, frame: Frame) -> Described:
     vertices = vertices * UNITS[entry.unit]
     if (entry.handedness or ("left" if frame.mirrored else "right")) == "left":
         vertices, faces = mirrored(vertices), faces[:, ::-1]
-    _check_size_shapes(entry, vertices)
-    return vertices, faces, path.name
-
-
-def _others(path: Path) -> str:
-    if not path.parent.is_dir():
-        return f"There is no folder {path.parent}."
-    names = sorted(file.name for file in path.parent.iterdir())
-    return f"The folder holds: {', '.join(names[:12])}"
-
-
-def _check_size_shapes(entry: MeshShape, vertices: np.ndarray) -> None:
     size = float((vertices.max(axis=0) - vertices.min(axis=0)).max())
     if not 0.001 <= size <= LARGEST_M:
         raise entry.error(
@@ -228,6 +218,7 @@ def _check_size_shapes(entry: MeshShape, vertices: np.ndarray) -> None:
             f"in its unit the mesh is {size:.4g} m long.",
             'State its unit: unit = "mm" (or cm, dm, m, in, ft).',
         )
+    return vertices, faces, path.name
 
 
 def _box(entry: BoxShape, frame: Frame) -> Described:
@@ -317,9 +308,9 @@ def _stretching(pairs: list[tuple[str, str]], frame: Frame) -> Iterator[Notice]:
 
 
 def _point(entry: Pose, key: str, frame: Frame, name: str) -> Float[np.ndarray, "3"]:
-    if name not in frame.points:
-        raise entry.unknown("point", name, frame.points, key)
-    return frame.points[name]
+    if name not in frame.names:
+        raise entry.unknown("point", name, frame.names, key)
+    return frame.place(name)
 
 
 def _parts(entry: PartsShape, frame: Frame) -> Described:
@@ -377,12 +368,12 @@ _MAKERS: dict[str, Callable[[Any, Frame], Described]] = {
 NEAR_S = 0.1
 """An object must be seen this near the stated time [s]."""
 
-Pose_support = tuple[Float[np.ndarray, "3"], Float[np.ndarray, "4"]]
+WorldPose = tuple[Float[np.ndarray, "3"], Float[np.ndarray, "4"]]
 
 
 def under_object(
     entry: ObjectEntry, shape: Shape | None, others: Sequence[TagObject]
-) -> tuple[Pose_support, str]:
+) -> tuple[WorldPose, str]:
     """The pose of a support whose surface is where an object's lowest corner is at a time.
 
     A pattern in ``top_at_bottom_of`` stands for every mobile object that has a shape, or for all
