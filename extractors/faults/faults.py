@@ -23,6 +23,42 @@ TRUNK = ("head", "neck", "chest", "torso", "spine", "pelvis")
 
 LIMBS = ("hand", "foot")
 
+NEAR = 2.5
+"""A length is one of a person's if it is nearer to the usual one than by this factor [1]."""
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def faults(
+    capture: Capture,
+    bodies: Bodies,
+    touches: Sequence[Contact],
+    motions: Mapping[str, list[Interval]],
+    thresholds: Thresholds,
+) -> Iterator[Notice]:
+    """Notices of what cannot be: falls, rests, sizes and sides that contradict what was declared.
+
+    A fall shows axis and unit exactly; rests and sizes are asked only where no fall does.
+
+    Args:
+        capture: The trial.
+        bodies: Its bodies.
+        touches: Who touches whom, and when.
+        motions: When each object moves.
+        thresholds: What separates odd from impossible.
+    """
+    if not capture.acting:
+        yield Notice("nothing-acts")
+    sized = is_sized(capture, thresholds)
+    falls = list(gravity_notices(capture, bodies, thresholds, sized=sized))
+    yield from falls
+    if not any(each.code == "up-contradicted" for each in falls):
+        yield from rest_notices(capture, bodies, touches, motions, thresholds)
+    if not any(each.code == "unit-contradicted" for each in falls):
+        yield from size_notices(capture, thresholds)
+    yield from shape_notices(capture, thresholds)
+    yield from side_notices(capture, thresholds)
+
 
 @dataclass(frozen=True, slots=True)
 class Reach:
@@ -40,24 +76,17 @@ def reaches(capture: Capture, thresholds: Thresholds) -> list[Reach]:
     """The largest distance of each two sensors of a person through a recording, by name."""
     found = []
     for first, second in combinations(capture.sensors, 2):
-        if capture.agent_of(first) != capture.agent_of(second):
-            continue
         apart = np.linalg.norm(first.stream.positions - second.stream.positions, axis=1)
-        if np.isnan(apart).all():
+        if capture.agent_of(first) != capture.agent_of(second) or np.isnan(apart).all():
             continue
+        kinds, least = {first.end_effector, second.end_effector}, 0.0
+        if kinds & set(TRUNK) and kinds & set(LIMBS):
+            standing = "head" in kinds and "foot" in kinds
+            least = thresholds.head_to_foot_m if standing else thresholds.trunk_to_limb_m
         frame = int(np.nanargmax(apart))
-        least = _least(first, second, thresholds)
         at_s = float(capture.times[frame])
         found.append(Reach(first.name, second.name, float(apart[frame]), at_s, least))
     return found
-
-
-def _least(first: Sensor, second: Sensor, thresholds: Thresholds) -> float:
-    kinds = {first.end_effector, second.end_effector}
-    if not (kinds & set(TRUNK) and kinds & set(LIMBS)):
-        return 0.0
-    standing = "head" in kinds and "foot" in kinds
-    return thresholds.head_to_foot_m if standing else thresholds.trunk_to_limb_m
 
 
 def is_sized(capture: Capture, thresholds: Thresholds) -> bool:
@@ -77,20 +106,17 @@ def size_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
     ]
     if wrong:
         worst = max(wrong, key=lambda each: each.largest_m)
+        how = capture.conventions.get(worst.first, Conventions())
+        usual = thresholds.head_to_foot_usual_m
+        if worst.least_m != thresholds.head_to_foot_m:
+            usual = thresholds.trunk_to_limb_usual_m
         yield notice(
             "unit-contradicted", worst.first, worst.second, start_s=worst.at_s, end_s=worst.at_s,
             shown="person", size_m=float(f"{worst.largest_m:.3g}"),
-            **_remedy(capture, worst, thresholds),
+            unit=likely_unit(worst.largest_m / how.unit_m, usual), declared=unit_name(how),
         )  # fmt: skip
-    yield from _fast_notices(capture, found, thresholds)
-
-
-def _remedy(capture: Capture, reach: Reach, thresholds: Thresholds) -> dict[str, str]:
-    how = capture.conventions.get(reach.first, Conventions())
-    usual = thresholds.head_to_foot_usual_m
-    if reach.least_m != thresholds.head_to_foot_m:
-        usual = thresholds.trunk_to_limb_usual_m
-    return {"unit": likely_unit(reach.largest_m / how.unit_m, usual), "declared": unit_name(how)}
+    if not found:
+        yield from _fast_notices(capture, thresholds)
 
 
 def likely_unit(length: float, usual_m: float) -> str:
@@ -105,14 +131,8 @@ def likely_unit(length: float, usual_m: float) -> str:
     return common if off[common] < np.log(NEAR) else min(off, key=off.__getitem__)
 
 
-NEAR = 2.5
-"""A length is one of a person's if it is nearer to the usual one than by this factor [1]."""
-
-
-def _fast_notices(capture: Capture, found: list[Reach], thresholds: Thresholds) -> Iterator[Notice]:
+def _fast_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
     """A sensor alone that is faster than any hand for a good part of the time."""
-    if found:
-        return
     for sensor in capture.sensors:
         steps = np.linalg.norm(np.diff(sensor.stream.positions, axis=0), axis=1)
         speeds = steps / np.diff(capture.times)
@@ -256,9 +276,6 @@ def _toward(
     return np.eye(3)[best % 3] * (1.0 if best < 3 else -1.0)
 
 
-UP = np.array([0.0, 0.0, 1.0])
-
-
 def side_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
     """A notice for each person whose pairs of right and left are exchanged nearly always.
 
@@ -308,34 +325,3 @@ def _sides(
         aside = np.einsum("ij,ij->i", apart, rightward) / level
         wide = np.abs(aside) > thresholds.apart_share * np.linalg.norm(apart, axis=1)
         return np.asarray(aside[wide & (level > thresholds.level_gaze)])
-
-
-def faults(
-    capture: Capture,
-    bodies: Bodies,
-    touches: Sequence[Contact],
-    motions: Mapping[str, list[Interval]],
-    thresholds: Thresholds,
-) -> Iterator[Notice]:
-    """Notices of what cannot be: falls, rests, sizes and sides that contradict what was declared.
-
-    A fall shows axis and unit exactly; rests and sizes are asked only where no fall does.
-
-    Args:
-        capture: The trial.
-        bodies: Its bodies.
-        touches: Who touches whom, and when.
-        motions: When each object moves.
-        thresholds: What separates odd from impossible.
-    """
-    if not capture.acting:
-        yield Notice("nothing-acts")
-    sized = is_sized(capture, thresholds)
-    falls = list(gravity_notices(capture, bodies, thresholds, sized=sized))
-    yield from falls
-    if not any(each.code == "up-contradicted" for each in falls):
-        yield from rest_notices(capture, bodies, touches, motions, thresholds)
-    if not any(each.code == "unit-contradicted" for each in falls):
-        yield from size_notices(capture, thresholds)
-    yield from shape_notices(capture, thresholds)
-    yield from side_notices(capture, thresholds)
