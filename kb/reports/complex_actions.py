@@ -9,7 +9,7 @@ from capar.model.par import ComplexPar, Step
 from kb.encode.pars import COMMON
 from kb.exchange import part
 from kb.lookup.pars import Pars, observations_of
-from kb.reports import drawing as svg
+from kb.reports import formats as svg
 from kb.store import names
 from kb.store.answers import turtle
 from ontology import CAPAR

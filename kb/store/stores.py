@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, BinaryIO, Protocol, TypeVar
+from typing import Any, BinaryIO, TypeAlias, TypeVar
 from urllib.error import HTTPError, URLError
 from urllib.request import Request, urlopen
 
@@ -59,52 +59,6 @@ PATIENCE_S = 60.0
 """How long a server may be silent in answering a query or a change of ours [s]."""
 
 
-class Store(Protocol):
-    """A dataset of named graphs; each change is whole or not at all, and lasts once it returns."""
-
-    place: str
-    """The folder or address, or ``memory``, for messages."""
-
-    def insert(self, quads: Iterable[Quad]) -> None:
-        """Add statements."""
-
-    def change(self, update: str) -> None:
-        """Run a SPARQL update of ours as one transaction."""
-
-    def ask(self, query: str) -> Answer:
-        """What a query of ours answers, over the union of all graphs."""
-
-    def ask_within(self, query: str, *, seconds: float) -> Answer:
-        """The answer to a user's query, stopped after so many seconds.
-
-        Raises:
-            QueryError: It is no SPARQL query.
-            TimeLimitError: It takes longer.
-        """
-
-    def graph(self, name: NamedNode) -> list[Quad]:
-        """Every statement of a graph."""
-
-    def quads(self) -> Iterable[Quad]:
-        """Every statement of every named graph."""
-
-    def check_readable(self) -> None:
-        """Check that every statement can be read.
-
-        Raises:
-            DamagedError: One cannot.
-        """
-
-    def dataset(self) -> Any:
-        """The same as rdflib's dataset, whose default graph is the union of all."""
-
-    def refresh(self) -> None:
-        """See what others have written since."""
-
-    def close(self) -> None:
-        """Close the store."""
-
-
 def place(given: str | None = None) -> str:
     """The Actionary that is meant: what is given, else the environment's, else ./actionary."""
     return given or os.environ.get(VARIABLE) or DEFAULT
@@ -115,7 +69,9 @@ def is_address(where: str) -> bool:
     return where.startswith(("http://", "https://"))
 
 
-def open_store(where: str | Path | None, *, read_only: bool = False, wait_s: float = 0.0) -> Store:
+def open_store(
+    where: str | Path | None, *, read_only: bool = False, wait_s: float = 0.0
+) -> "Store":
     """The store at a place; a folder that is not there yet is made, unless it is only read.
 
     Args:
@@ -447,6 +403,10 @@ class RemoteStore:
 
     def close(self) -> None:
         """There is nothing to release."""
+
+
+Store: TypeAlias = EmbeddedStore | RemoteStore
+"""A dataset of named graphs; each change is whole or not at all, and lasts once it returns."""
 
 
 def _post(url: str, text: str, kind: str) -> tuple[str, bytes]:
