@@ -172,11 +172,7 @@ class Knowledge:
 
 
 def instantiate(
-    asked: Asked,
-    recording: Recording,
-    source: Source,
-    known: Knowledge,
-    ask: Ask | None = None,
+    asked: Asked, recording: Recording, source: Source, known: Knowledge, ask: Ask | None = None
 ) -> Instance:
     """Bind every part of a recorded action, and check that it is applicable.
 

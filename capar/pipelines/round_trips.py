@@ -23,11 +23,7 @@ from capar.regeneration.captures import (
     joint_capture_of,
     mirrored,
 )
-from capar.regeneration.hand_overs import (
-    JointSource,
-    joint_source,
-    regenerate_together,
-)
+from capar.regeneration.hand_overs import JointSource, joint_source, regenerate_together
 from capar.regeneration.motion import Motion
 from capar.regeneration.quality import Quality
 from capar.regeneration.scenes import PlanError, Scene, drawn_scene

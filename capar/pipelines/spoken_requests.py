@@ -283,8 +283,7 @@ def _unobserved(request: Request, recordings: Sequence[Recording]) -> RequestErr
     hands = " with both hands" if len(request.sides) > 1 else ""
     what = f"{request.said!r}{hands}" + (" with another thing" if len(request.objects) > 1 else "")
     return RequestError(
-        "verb",
-        f"nobody was observed doing {what}; observed are {', '.join(known) or 'no actions'}",
+        "verb", f"nobody was observed doing {what}; observed are {', '.join(known) or 'no actions'}"
     )
 
 

@@ -61,9 +61,7 @@ def mapped_plan(source: Source, human: Human) -> Plan:
 
 
 def axis_mapped(
-    path: Float[np.ndarray, "frames 3"],
-    start: Float[np.ndarray, "3"],
-    goal: Float[np.ndarray, "3"],
+    path: Float[np.ndarray, "frames 3"], start: Float[np.ndarray, "3"], goal: Float[np.ndarray, "3"]
 ) -> Float[np.ndarray, "frames 3"]:
     """A path between other ends, axis by axis (thesis 3.4.2, eq. 3.3) [m].
 

@@ -51,11 +51,7 @@ class Effort:
     """From free (-1) to bound (1)."""
 
     def __post_init__(self) -> None:
-        """Check that every parameter is between its poles.
-
-        Raises:
-            CaparError: One is not.
-        """
+        """Check that every parameter is between its poles."""
         for name, value in self.values.items():
             if not -1.0 <= value <= 1.0:
                 low, high = POLES[name]

@@ -361,9 +361,7 @@ def end_velocity(
 
 
 def _velocities(
-    times: Float[np.ndarray, "frames"],
-    start: Float[np.ndarray, "3"],
-    end: Float[np.ndarray, "3"],
+    times: Float[np.ndarray, "frames"], start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"]
 ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
     """Velocities at both ends of a flight from one place to another [m/s]."""
     lasts = float(times[-1] - times[0])

@@ -126,11 +126,7 @@ def scene_constraints(source: Source, scene: Scene) -> dict[str, Constraint]:
 
 
 def guided_poses(
-    source: Source,
-    scene: Scene,
-    name: str,
-    recorded: RigidTransform,
-    spans: list[tuple[int, int]],
+    source: Source, scene: Scene, name: str, recorded: RigidTransform, spans: list[tuple[int, int]]
 ) -> RigidTransform:
     """``T_world_thing`` at every frame of an object on a hinge or a rail, on its own line.
 

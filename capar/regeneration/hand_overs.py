@@ -252,8 +252,7 @@ def _through(
             gone = path[goal.frame].translation - before.translation
             if not support_at(one.scene, passed.thing, path[goal.frame]):
                 pose = RigidTransform.from_components(
-                    after.translation + turn.apply(gone),
-                    turn * path[goal.frame].rotation,
+                    after.translation + turn.apply(gone), turn * path[goal.frame].rotation
                 )
                 reason = "as far from where it was handed over as it was [m]"
                 kept.append(replace(goal, pose=pose, reason=reason))
@@ -401,9 +400,6 @@ def _reachable(source: JointSource, cast: Cast, kind: Kind) -> tuple[Place, dict
     """Where objects are handed over, and everybody's grips.
 
     The first place that all reach with the recorded grips, else the usual one with turned grips.
-
-    Raises:
-        PlanError: There is none.
     """
     for name, human in cast.humans.items():
         check_stance(cast.scenes[name], human)
@@ -426,11 +422,7 @@ def _drafts(
     names: list[str] | None = None,
     watched: frozenset[int] = frozenset(),
 ) -> dict[str, Draft]:
-    """Everybody's grips, with so many turns tried.
-
-    Raises:
-        PlanError: Somebody has none that reaches.
-    """
+    """Everybody's grips, with so many turns tried."""
     first = next(iter(source.sources))
     ways = joint_paths(source, cast, own_style(source.sources[first], kind), place)
     out = {}

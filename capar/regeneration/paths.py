@@ -164,10 +164,7 @@ class Carrying:
         return worst
 
     def _gaps(
-        self,
-        name: str,
-        pose: Float[np.ndarray, "7"],
-        others: Mapping[str, Float[np.ndarray, "7"]],
+        self, name: str, pose: Float[np.ndarray, "7"], others: Mapping[str, Float[np.ndarray, "7"]]
     ) -> Iterator[tuple[str, float]]:
         self.around.place(self.posture, {**others, name: pose})
         for pair in self.around.things_near():
@@ -359,14 +356,7 @@ def hand_paths(
                 ends: tuple[RigidTransform, RigidTransform] = (start, goal),
                 away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = away,
             ) -> RigidTransform:
-                return mapped(
-                    part,
-                    *ends,
-                    turn=turn,
-                    detour=detour,
-                    away=away,
-                    kind=style.kind,
-                )
+                return mapped(part, *ends, turn=turn, detour=detour, away=away, kind=style.kind)
 
             held = before is not None, after is not None
             apart = after.thing if after and _moved_at_once(source, after) else ""
@@ -405,8 +395,7 @@ def _away(hand: RigidTransform, hold: Hold | None) -> Float[np.ndarray, "3"]:
 
 
 DETOURS = sorted(
-    (Detour(lift, off) for lift in HAND_LIFTS_M for off in OFFS_M),
-    key=lambda each: each.size,
+    (Detour(lift, off) for lift in HAND_LIFTS_M for off in OFFS_M), key=lambda each: each.size
 )
 
 

@@ -114,14 +114,7 @@ class Solver:
         heading: float,
         further: Sequence[mink.Task] = (),
     ) -> None:
-        """Stand at ease.
-
-        Args:
-            human: Who.
-            place: Where [m].
-            heading: Which way [rad].
-            further: What else is wanted.
-        """
+        """Stand at ease."""
         self.human, self.further = human, further
         eased = {f"{s}_{n}": float(np.radians(a)) for n, a in RELAXED.items() for s in SIDES}
         self.rest = human.posture(eased, place=place, heading=heading)

@@ -16,12 +16,7 @@ from capar.pipelines.round_trips import bodies, observed_joint_source
 from capar.pipelines.trials import trial_of
 from capar.regeneration import PlanError
 from capar.regeneration.captures import joint_capture_of
-from capar.regeneration.hand_overs import (
-    JointMotion,
-    JointSource,
-    joint_gates,
-    regenerate_together,
-)
+from capar.regeneration.hand_overs import JointMotion, JointSource, joint_gates, regenerate_together
 from capar.regeneration.scenes import read_scenes
 
 RATE_HZ = 30.0

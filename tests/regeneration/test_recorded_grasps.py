@@ -20,13 +20,7 @@ from capar.regeneration.body_frames import body_frames, free_pose, rest_pose
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.goals import TOUCH_M, touching_shift
 from capar.regeneration.grips import Turn, drawn_turns
-from capar.regeneration.holds import (
-    INSTANTS,
-    Hold,
-    holds_of,
-    with_touches,
-    with_unseen_ends,
-)
+from capar.regeneration.holds import INSTANTS, Hold, holds_of, with_touches, with_unseen_ends
 from capar.regeneration.planning import Draft
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver

@@ -103,12 +103,7 @@ def _sunk(motion: Motion) -> Motion:
 
 @pytest.mark.parametrize(
     ("spoilt", "gate"),
-    [
-        (_jumped, "joint speed"),
-        (_slid, "feet"),
-        (_let_go, "on the way"),
-        (_sunk, "penetration"),
-    ],
+    [(_jumped, "joint speed"), (_slid, "feet"), (_let_go, "on the way"), (_sunk, "penetration")],
     ids=["a jump", "sliding feet", "a loose grip", "a sunk mug"],
 )
 def test_a_spoilt_motion_does_not_pass(spoilt: object, gate: str) -> None:

@@ -6,11 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from capar.body.scripted_actions import performed
-from capar.regeneration.styles import (
-    CoordinateError,
-    frame_between,
-    replayed,
-)
+from capar.regeneration.styles import CoordinateError, frame_between, replayed
 
 ASIDE = np.array([[0.1, 0.0, 0.0], [0.0, 0.12, 0.05], [-0.05, -0.1, 0.1], [0.08, 0.1, -0.1]])
 numbers = st.floats(-1.0, 1.0)

@@ -10,14 +10,7 @@ from capar.pipelines.observation import observe
 from capar.pipelines.round_trips import by_hand, observed_source
 from capar.regeneration import PlanError, Source, capture_of, regenerate
 from capar.regeneration.captures import mirrored
-from capar.regeneration.styles import (
-    Kind,
-    arc_shares,
-    borrowed_style,
-    mapped,
-    own_style,
-    paced,
-)
+from capar.regeneration.styles import Kind, arc_shares, borrowed_style, mapped, own_style, paced
 
 
 @cache

@@ -15,9 +15,7 @@ from capar.regeneration.efforts import read_effort, regenerate_in_manner
 from capar.regeneration.forces import ForceKind, end_velocity, flight_faults
 from capar.regeneration.goals import object_goals
 from capar.regeneration.holds import releases_of
-from capar.regeneration.planning import (
-    reachable,
-)
+from capar.regeneration.planning import reachable
 from capar.regeneration.quality import quality
 from capar.regeneration.scenes import raised
 from capar.regeneration.styles import own_style
