@@ -385,18 +385,14 @@ def regenerate_together(
         PlanError: It is out of reach or impossible; the message says what would help.
     """
     cast = Cast(humans, scenes or {name: one.scene for name, one in source.sources.items()})
-    place, drafts = _reachable(source, cast, kind)
-    motions, qualities = {}, {}
-    for name, draft in drafts.items():
-
-        def again(watched: frozenset[int], name: str = name) -> Draft:
-            return _drafts(source, cast, kind, place, MOST_TURNS, [name], watched)[name]
-
-        motions[name], qualities[name] = best_motion(draft, again)
+    drafts = _reachable(source, cast, kind)
+    made = {name: best_motion(draft) for name, draft in drafts.items()}
+    motions = {name: motion for name, (motion, _) in made.items()}
+    qualities = {name: quality for name, (_, quality) in made.items()}
     return JointMotion(source, motions, qualities, joint_gates(source, motions))
 
 
-def _reachable(source: JointSource, cast: Cast, kind: Kind) -> tuple[Place, dict[str, Draft]]:
+def _reachable(source: JointSource, cast: Cast, kind: Kind) -> dict[str, Draft]:
     """Where objects are handed over, and everybody's grips.
 
     The first place that all reach with the recorded grips, else the usual one with turned grips.
@@ -407,28 +403,22 @@ def _reachable(source: JointSource, cast: Cast, kind: Kind) -> tuple[Place, dict
     why = ""
     for place, most in [*((place, 1) for place in (usual, *others)), (usual, MOST_TURNS)]:
         try:
-            return place, _drafts(source, cast, kind, place, most)
+            return _drafts(source, cast, kind, place, most)
         except PlanError as error:
             why = why or str(error)
     raise PlanError(f"{why}; {_remedy(source, cast, kind)}")
 
 
 def _drafts(
-    source: JointSource,
-    cast: Cast,
-    kind: Kind,
-    place: Place,
-    most: int,
-    names: list[str] | None = None,
-    watched: frozenset[int] = frozenset(),
+    source: JointSource, cast: Cast, kind: Kind, place: Place, most: int
 ) -> dict[str, Draft]:
     """Everybody's grips, with so many turns tried."""
     first = next(iter(source.sources))
     ways = joint_paths(source, cast, own_style(source.sources[first], kind), place)
     out = {}
-    for name in names or list(source.sources):
-        one, scene = source.sources[name], cast.scenes[name]
-        draft = Draft(one, scene, cast.humans[name], own_style(one, kind), watched, ways)
+    for name, one in source.sources.items():
+        scene = cast.scenes[name]
+        draft = Draft(one, scene, cast.humans[name], own_style(one, kind), ways)
         if beyond := draft.beyond():
             raise PlanError(f"{name}: {beyond}")
         grips, missed = draft.reachable_grips(most)

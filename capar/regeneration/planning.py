@@ -170,7 +170,6 @@ class Draft:
         scene: Scene,
         human: Human,
         style: Style,
-        watched: frozenset[int] = frozenset(),
         ways: ObjectPaths | None = None,
     ) -> None:
         self.source, self.scene = source, scene
@@ -188,7 +187,7 @@ class Draft:
         self.clear = ClearTask(self.gripping.around, source.met)
         self.grips: tuple[Grip, ...] = ()
         self.pressed: list[str] = []
-        self.watched, self.style = watched, style
+        self.style = style
 
     def beyond(self) -> str:
         """What a freely turning palm misses by more than any grip gains; empty if nothing."""
@@ -388,7 +387,6 @@ class Draft:
         """The frames at which reach is tried in some holds."""
         first, last = min(h.first for h in group), max(h.last for h in group)
         keys = {int(frame) for frame in np.linspace(first, last, KEYS)}
-        keys |= {frame for frame in self.watched if first <= frame <= last}
         for goals in self.goals.values():
             keys |= {goal.frame for goal in goals if first <= goal.frame <= last}
         return sorted(keys)
@@ -547,12 +545,8 @@ def reachable(
     scene: Scene,
     human: Human,
     style: Style | None = None,
-    watched: frozenset[int] = frozenset(),
 ) -> Draft:
     """Goals, and grips that reach them, from where it stands or, unless it stays, from nearby.
-
-    Reach is also tried at the ``watched`` frames; without any grip that reaches there, nothing
-    else is sought that would help.
 
     Raises:
         PlanError: Something is out of reach or cannot be put down; the message says what would
@@ -562,7 +556,7 @@ def reachable(
     check_co_held(source, scene, human)
     pressed: Draft | None = None
     try:
-        found = _draft(source, scene, human, style, watched)
+        found = _draft(source, scene, human, style)
         if not found.pressed:
             return found
         pressed, why = found, found.pressed[0]
@@ -571,20 +565,20 @@ def reachable(
     for ahead_m, aside_m in () if scene.stays else STEPS_M:
         nearby = beside(scene, ahead_m, aside_m)
         if is_possible(source, nearby, human):
-            found = _draft(source, nearby, human, style, watched)
+            found = _draft(source, nearby, human, style)
             place = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
             found.told.append(f"stands {place} of the given place, since there {why}")
             return found
     if pressed:
         pressed.told += [f"whatever the grip, {told}" for told in pressed.pressed]
         return pressed
-    raise PlanError(why if watched else f"{why}; {_remedy(source, scene, human)}")
+    raise PlanError(f"{why}; {_remedy(source, scene, human)}")
 
 
 def why_unreachable(source: Source, scene: Scene, human: Human, style: Style) -> str | None:
     """Why a body does not come to every goal from just there; None where it does."""
     try:
-        found = _draft(source, scene, human, style, frozenset())
+        found = _draft(source, scene, human, style)
     except PlanError as error:
         return str(error)
     return found.pressed[0] if found.pressed else None
@@ -620,11 +614,9 @@ def led(draft: Draft, care: Care) -> Plan:
     )  # fmt: skip
 
 
-def _draft(
-    source: Source, scene: Scene, human: Human, style: Style, watched: frozenset[int]
-) -> Draft:
+def _draft(source: Source, scene: Scene, human: Human, style: Style) -> Draft:
     check_stance(scene, human)
-    draft = Draft(source, scene, human, style, watched)
+    draft = Draft(source, scene, human, style)
     grips, out_of_reach = draft.reachable_grips(1)
     if out_of_reach is not None or draft.pressed:
         if missed := draft.beyond():

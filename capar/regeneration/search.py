@@ -15,7 +15,6 @@ motion  as planned                                        nearly all
         wider margins of free hands                       a mug cut in passing
         hands led more firmly besides                     a hand that arrives late
         drawn to the key postures of the grips            an elbow that bent the other way
-        grips that reach where the motion was worst       reach between two key postures
 refuse  remedies: nearer, higher, lower, smaller, taller  what is out of reach
 ======  ================================================  ======================================
 
@@ -23,7 +22,6 @@ refuse  remedies: nearer, higher, lower, smaller, taller  what is out of reach
 keeps the one that fails fewest gates (``quality``).
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from capar.body.human import Human
@@ -31,7 +29,7 @@ from capar.regeneration.motion import Guide, Motion, guide_of, perform_plan
 from capar.regeneration.paths import Care
 from capar.regeneration.planning import Draft, led, reachable
 from capar.regeneration.quality import Quality, quality
-from capar.regeneration.scenes import PlanError, Scene
+from capar.regeneration.scenes import Scene
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import Style
 
@@ -41,9 +39,6 @@ CARES = (Care(), WIDER, replace(WIDER, firm_s=1.0, weight=2.0))
 
 BY_CARE = {"penetration", "free hand clear", "event position", "event rotation", "on the way"}
 """The gates that more care may mend: a hand that is led firmly for longer arrives in time."""
-
-BY_GRIP = BY_CARE - {"free hand clear"}
-"""The gates that another grip may mend."""
 
 
 def regenerate(
@@ -56,26 +51,14 @@ def regenerate(
     Raises:
         PlanError: It is out of reach or impossible; the message says what would help.
     """
-    where = scene or source.scene
-    draft = reachable(source, where, human, style)
-    return best_motion(draft, lambda watched: reachable(source, where, human, style, watched))
+    return best_motion(reachable(source, scene or source.scene, human, style))
 
 
-def best_motion(draft: Draft, again: Callable[[frozenset[int]], Draft]) -> tuple[Motion, Quality]:
-    """The motion of a draft with grips that fails fewest gates.
-
-    ``again`` seeks grips that reach at some frames besides the usual ones, and raises PlanError
-    where there are none.
-    """
+def best_motion(draft: Draft) -> tuple[Motion, Quality]:
+    """The motion of a draft with grips that fails fewest gates."""
     best = _careful(draft)
     if not best[1].passed and draft.grips:
         best = min(best, _careful(draft, guide_of(draft)), key=_failures)
-    worst = {g.frame for g in best[1].gates if not g.passed and g.name in BY_GRIP}
-    if worst and not draft.pressed:
-        try:
-            best = min(best, _careful(again(frozenset(worst))), key=_failures)
-        except PlanError:
-            return best
     return best
 
 
