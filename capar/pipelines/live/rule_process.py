@@ -1,4 +1,13 @@
-"""Rules that are asked for hours without memory that grows."""
+"""Rules that are asked for hours without memory that grows.
+
+The solver frees no term that it ever saw, and every frame has terms of its own: within an hour they
+would fill some hundred megabytes. So a process of its own is asked, which another one replaces in
+time. The first minutes need none: to start one takes as long as some answers.
+
+Run as a program this module is such a worker: a pickled profile comes in, then one pickled list of
+facts after the other; for each list a pickled pair goes out of the answer, or the error that it
+raised, and the processor time of the worker [s].
+"""
 
 import pickle
 import subprocess
@@ -9,7 +18,6 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from threading import Thread
-from typing import BinaryIO
 
 import capar
 from capar.model.errors import CaparError
@@ -17,37 +25,6 @@ from capar.model.facts import Fact
 from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import Profile
 from capar_rules.pars.inference import Inference, infer
-
-
-def inferred(facts: Sequence[Fact], rules: Profile) -> Inference:
-    """What rules say of facts, their flicker resolved as the profile has it.
-
-    Raises:
-        RuleError: The rules have a fault, or not exactly one answer.
-    """
-    return infer(steady(facts) if rules.steady else tuple(facts), profile=rules)
-
-
-def serve(asked: BinaryIO, answered: BinaryIO) -> None:
-    """Answer until nothing more is asked."""
-    rules: Profile = pickle.load(asked)
-    while True:
-        try:
-            facts: Sequence[Fact] = pickle.load(asked)
-        except EOFError:
-            return
-        answer: Inference | CaparError
-        try:
-            answer = inferred(facts, rules)
-        except CaparError as error:
-            answer = error
-        pickle.dump((answer, time.process_time()), answered, protocol=pickle.HIGHEST_PROTOCOL)
-        answered.flush()
-
-
-if __name__ == "__main__":
-    serve(sys.stdin.buffer, sys.stdout.buffer)
-
 
 OWN_ASKS = 400
 """So often this process asks the rules itself [1]: in three minutes or more."""
@@ -61,12 +38,20 @@ AHEAD = 40
 WARMING = 3
 """Who has answered so often has read the rules for good [1]."""
 
-
 _START = (
     "import runpy, sys; sys.path.insert(0, sys.argv[1]); "
     "runpy.run_module('capar.pipelines.live.rule_process', run_name='__main__')"
 )
 """Runs the worker of this very copy of the package, from wherever that was imported."""
+
+
+def inferred(facts: Sequence[Fact], rules: Profile) -> Inference:
+    """What rules say of facts, their flicker resolved as the profile has it.
+
+    Raises:
+        RuleError: The rules have a fault, or not exactly one answer.
+    """
+    return infer(steady(facts) if rules.steady else tuple(facts), profile=rules)
 
 
 class RuleProcess:
@@ -83,7 +68,7 @@ class RuleProcess:
         self._left = own_asks
         self._asks = asks
         self._worker: _Worker | None = None
-        self._next: _Starting | None = None
+        self._next: _Worker | None = None
         self._spent_s = 0.0
 
     @property
@@ -112,10 +97,11 @@ class RuleProcess:
             RuleError: The rules have a fault, or not exactly one answer.
         """
         if self._left <= AHEAD and self._next is None:
-            self._next = _Starting(self._rules, facts)
+            self._next = _Worker(self._rules, facts)
         if self._left <= 0 and self._next is not None:
             self._end_worker()
-            self._worker, self._next, self._left = self._next.worker(), None, self._asks
+            self._worker, self._next, self._left = self._next, None, self._asks
+            self._worker.warming.join()
         self._left -= 1
         if self._worker is not None:
             try:
@@ -130,14 +116,14 @@ class RuleProcess:
 
     def close(self) -> None:
         """End the workers; this process answers what is asked then."""
-        if self._next is not None:
-            self._next.worker().end()
-            self._next = None
+        self._end_worker()
+        self._worker, self._next = self._next, None
         self._end_worker()
         self._left = sys.maxsize
 
     def _end_worker(self) -> None:
         if self._worker is not None:
+            self._worker.warming.join()
             self._spent_s += self._worker.spent_s
             self._worker.end()
         self._worker = None
@@ -148,9 +134,9 @@ class _EndedError(Exception):
 
 
 class _Worker:
-    """A process that answers."""
+    """A process that answers; it reads the rules for good aside, until ``warming`` has ended."""
 
-    def __init__(self) -> None:
+    def __init__(self, rules: Profile, facts: Sequence[Fact]) -> None:
         # In a session of its own: who interrupts this process still wants its last answer.
         command = [sys.executable, "-P", "-c", _START, str(Path(capar.__file__).parents[1])]
         self.process = subprocess.Popen(
@@ -158,11 +144,19 @@ class _Worker:
         )
         self.spent_s = 0.0
         self.end = weakref.finalize(self, _end, self.process)
+        self.warming = Thread(target=self._warm, args=(rules, tuple(facts)), daemon=True)
+        self.warming.start()
+
+    def _warm(self, rules: Profile, facts: Sequence[Fact]) -> None:
+        with suppress(CaparError, _EndedError, BrokenPipeError):
+            self._send(rules)
+            for _ in range(WARMING):
+                self.answer(facts)
 
     def answer(self, facts: Sequence[Fact]) -> Inference:
         assert self.process.stdout is not None
         try:
-            self.send(tuple(facts))
+            self._send(tuple(facts))
             answer, self.spent_s = pickle.load(self.process.stdout)
         except (EOFError, BrokenPipeError, pickle.UnpicklingError):
             raise _EndedError from None
@@ -171,31 +165,10 @@ class _Worker:
         assert isinstance(answer, Inference)
         return answer
 
-    def send(self, value: object) -> None:
+    def _send(self, value: object) -> None:
         assert self.process.stdin is not None
         pickle.dump(value, self.process.stdin, protocol=pickle.HIGHEST_PROTOCOL)
         self.process.stdin.flush()
-
-
-class _Starting:
-    """A worker that is started aside, and asked until it has read the rules for good."""
-
-    def __init__(self, rules: Profile, facts: Sequence[Fact]) -> None:
-        self._rules = rules
-        self._worker = _Worker()
-        self._thread = Thread(target=self._warm, args=(tuple(facts),), daemon=True)
-        self._thread.start()
-
-    def _warm(self, facts: Sequence[Fact]) -> None:
-        with suppress(CaparError, _EndedError, BrokenPipeError):
-            self._worker.send(self._rules)
-            for _ in range(WARMING):
-                self._worker.answer(facts)
-
-    def worker(self) -> _Worker:
-        """The worker, once it is ready."""
-        self._thread.join()
-        return self._worker
 
 
 def _end(process: "subprocess.Popen[bytes]") -> None:
@@ -205,3 +178,25 @@ def _end(process: "subprocess.Popen[bytes]") -> None:
         process.stdin.close()
     process.stdout.close()
     process.wait()
+
+
+def _serve() -> None:
+    """Answer until nothing more is asked."""
+    asked, answered = sys.stdin.buffer, sys.stdout.buffer
+    rules: Profile = pickle.load(asked)
+    while True:
+        try:
+            facts: Sequence[Fact] = pickle.load(asked)
+        except EOFError:
+            return
+        answer: Inference | CaparError
+        try:
+            answer = inferred(facts, rules)
+        except CaparError as error:
+            answer = error
+        pickle.dump((answer, time.process_time()), answered, protocol=pickle.HIGHEST_PROTOCOL)
+        answered.flush()
+
+
+if __name__ == "__main__":
+    _serve()

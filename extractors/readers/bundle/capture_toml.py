@@ -439,7 +439,7 @@ def _still(
 
 def _pivots(document: CaptureFile, group: _Declared) -> list[PivotContact]:
     out = []
-    known = [each.name for each in (*group.sensors, *group.objects)]
+    known = [each.name for each in group.sensors] + [each.name for each in group.objects]
     for entry in document.pivot_contact:
         for key in ("first", "second"):
             if (name := getattr(entry, key)) not in known:
@@ -451,7 +451,9 @@ def _pivots(document: CaptureFile, group: _Declared) -> list[PivotContact]:
 def _gap_notices(group: _Declared) -> list[Notice]:
     """A notice for every interval in which a body is lost for longer than is interpolated."""
     out = []
-    for name, stream in {e.name: e.stream for e in (*group.sensors, *group.objects)}.items():
+    streams = {each.name: each.stream for each in group.sensors}
+    streams |= {each.name: each.stream for each in group.objects}
+    for name, stream in streams.items():
         times, last = stream.times, len(stream.times) - 1
         for first, end in geometry.runs(stream.lost):
             if times[min(end + 1, last)] - times[max(first - 1, 0)] <= GAP_S:
