@@ -17,9 +17,7 @@ import numpy as np
 from jaxtyping import Float
 
 INCH_M = 0.0254
-FULL_SCALE = 32768
-"""Word of a whole range, half a turn, or one."""
-
+FULL_SCALE = 32768  # Word of a whole range, half a turn, or one.
 NORM_TOLERANCE = 0.05
 """How far a quaternion's norm, or a matrix's product with its transpose, may lie from one [1]."""
 

@@ -32,9 +32,7 @@ from extractors.devices.tracker import (
 
 END = b"\r\n"
 STATIONS = 4
-FIELD = 7
-"""Characters of a number in an ASCII record."""
-
+FIELD = 7  # Characters of a number in an ASCII record.
 MOST_ERRORS = 0x7F
 NORM_TOLERANCE = 0.05
 CM_M = 0.01
@@ -42,8 +40,7 @@ CM_M = 0.01
 ITEMS = {"pos": (2,), "pos_ang": (2, 4), "pos_quat": (2, 11)}
 """Items of the output list by format: 2 position, 4 azimuth elevation roll, 11 quaternion."""
 
-VALUES = {2: 3, 4: 3, 11: 4}
-"""Numbers of an item."""
+VALUES = {2: 3, 4: 3, 11: 4}  # Numbers of an item.
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,15 +163,10 @@ class RecordParser:
         self._dropped = 0
 
 
-RECORDS_HZ = 120.0
-"""Records a second of all stations together."""
-
-SETTLE_S = 0.2
-"""How long the line is left to end what was being sent [s]."""
-
+RECORDS_HZ = 120.0  # Records a second of all stations together.
+SETTLE_S = 0.2  # How long the line is left to end what was being sent [s].
 SILENCE_S = 2.0
-ANSWER_S = 1.0
-"""How long the answer to a poll may pause [s]."""
+ANSWER_S = 1.0  # How long the answer to a poll may pause [s].
 
 
 @dataclass(frozen=True)

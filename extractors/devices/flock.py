@@ -40,8 +40,7 @@ from extractors.devices.tracker import (
 
 POINT, STREAM, RUN, SLEEP, EXAMINE, CHANGE = 0x42, 0x40, 0x46, 0x47, 0x4F, 0x50
 HEMISPHERE, NEXT_TRANSMITTER, FBB_RESET, PREFIX = 0x4C, 0x30, 0x2F, 0xF0
-EVERY = {1: 0x51, 2: 0x52, 8: 0x53, 32: 0x54}
-"""Report every nth cycle: the command by n."""
+EVERY = {1: 0x51, 2: 0x52, 8: 0x53, 32: 0x54}  # Report every nth cycle: the command by n.
 
 HEMISPHERES = {"front": b"\x00\x00", "rear": b"\x00\x01", "right": b"\x06\x00",
                "left": b"\x06\x01", "lower": b"\x0c\x00", "upper": b"\x0c\x01"}  # fmt: skip
@@ -55,14 +54,9 @@ SIZES = {STATUS: 2, FIRMWARE: 2, CRYSTAL: 2, SCALING: 2, COUNT: 2, RATE: 2, ERRO
          FLOCK_STATUS: 14, AUTO_CONFIG: 1}  # fmt: skip
 """Bytes of a parameter's value."""
 
-ACCESSIBLE, RUNNING, SENSOR, ERC = 0x80, 0x40, 0x20, 0x10
-"""Bits of a unit in the flock status."""
-
-RATE_UNIT = 256.0
-"""Parameter 7 is the measurement rate [Hz] times this."""
-
-MOST_HZ = 144.0
-"""Measuring cycles a second that the birds do at most."""
+ACCESSIBLE, RUNNING, SENSOR, ERC = 0x80, 0x40, 0x20, 0x10  # Bits of a unit in the flock status.
+RATE_UNIT = 256.0  # Parameter 7 is the measurement rate [Hz] times this.
+MOST_HZ = 144.0  # Measuring cycles a second that the birds do at most.
 
 ERRORS = {
     1: "system memory failed its test",
@@ -87,45 +81,24 @@ ERRORS = {
 }
 """What error codes mean."""
 
-FATAL = frozenset({1, 2, 15, 16, *range(20, 28)})
-"""Errors after which a bird does not go on."""
-
+FATAL = frozenset({1, 2, 15, 16, *range(20, 28)})  # Errors after which a bird does not go on.
 PHASE = 0x80
-KEPT = 0xFFFC
-"""Bits of a word that the wire carries."""
-
+KEPT = 0xFFFC  # Bits of a word that the wire carries.
 SLACK_S = 0.004
 """What a record may take longer than its bytes do, and count without a byte after it [s]."""
 
 SETTLE_S = 0.75
 """How long the line is left idle around auto-configuration: 0.6 s, and what delays it [s]."""
 
-REPLY_S = 0.3
-"""How long a reply to a question may take beyond its bytes [s]."""
-
-ATTEMPTS = 6
-"""How often a question is put, on a line that may lose bytes."""
-
-POLL_REPLY_S = 1.0
-"""How long the answer to a poll may take to begin [s]."""
-
-POLL_IDLE_S = 0.1
-"""A poll's answer that stops for so long has ended [s]."""
-
-AFTER_RESET_S = 2.0
-"""How long units take to restart [s]."""
-
-CONFIGURATIONS = 3
-"""How often auto-configuration is tried."""
-
-SILENCE_S = 1.5
-"""A flock that sends nothing for so long is lost [s]."""
-
-IDLE_S = 0.006
-"""A line without a byte for so long has sent its record [s]."""
-
-AHEAD = 50
-"""How many cycles birds with lines of their own may be apart."""
+REPLY_S = 0.3  # How long a reply to a question may take beyond its bytes [s].
+ATTEMPTS = 6  # How often a question is put, on a line that may lose bytes.
+POLL_REPLY_S = 1.0  # How long the answer to a poll may take to begin [s].
+POLL_IDLE_S = 0.1  # A poll's answer that stops for so long has ended [s].
+AFTER_RESET_S = 2.0  # How long units take to restart [s].
+CONFIGURATIONS = 3  # How often auto-configuration is tried.
+SILENCE_S = 1.5  # A flock that sends nothing for so long is lost [s].
+IDLE_S = 0.006  # A line without a byte for so long has sent its record [s].
+AHEAD = 50  # How many cycles birds with lines of their own may be apart.
 
 
 def error_text(code: int, unit: int = 0) -> str:
@@ -672,12 +645,8 @@ class FlockTracker(LiveTracker):
         return self._frames.add(cycle, SensorReading(index, record.stamp_s, *pose))
 
 
-MEASURED_HZ = 103.3
-"""Measuring cycles a second of a simulated flock until it is told otherwise."""
-
-WRONG_ADDRESS = 0x7F
-"""Address of no bird."""
-
+MEASURED_HZ = 103.3  # Measuring cycles a second of a simulated flock until it is told otherwise.
+WRONG_ADDRESS = 0x7F  # Address of no bird.
 BY_COMMAND = {each.command: each for each in FORMATS.values()}
 EVERY_BY_COMMAND = {command: every for every, command in EVERY.items()}
 DATA_SIZES = {HEMISPHERE: 2, NEXT_TRANSMITTER: 1, EXAMINE: 1}

@@ -12,15 +12,11 @@ from serial.tools.list_ports import comports
 from capar.model.errors import DeviceError
 from extractors.devices.tracker import DeviceLostError
 
-BITS = 10
-"""Bits of a byte on an 8N1 line: start, eight of data, stop."""
-
+BITS = 10  # Bits of a byte on an 8N1 line: start, eight of data, stop.
 BAUDS = (2400, 4800, 9600, 19200, 38400, 57600, 115200)
 """Speeds of the trackers' serial lines [bits a second]."""
 
-RESET_S = 1.0
-"""How long RTS is held to reset a Flock of Birds [s]."""
-
+RESET_S = 1.0  # How long RTS is held to reset a Flock of Birds [s].
 CONNECT_S = 3.0
 LARGEST = 65536
 RECEIVED = 1 << 20

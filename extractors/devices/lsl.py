@@ -20,17 +20,12 @@ PARTS = (
 )  # fmt: skip
 STREAM_TYPE = "MoCap"
 MARKER_TYPE = "Markers"
-BUFFER_S = 60
-"""Seconds of samples that are kept while nobody polls."""
-
+BUFFER_S = 60  # Seconds of samples that are kept while nobody polls.
 LAST_S = 0.5
 """So long a stream of markers stays after its last one [s]: the library drops what is unsent."""
 
-CLOCK_S = 5.0
-"""How often the difference of the clocks is measured [s]."""
-
-READS = 3
-"""How often two clocks are read to compare them; that read counts which took least."""
+CLOCK_S = 5.0  # How often the difference of the clocks is measured [s].
+READS = 3  # How often two clocks are read to compare them; that read counts which took least.
 
 
 def _pylsl() -> Any:

@@ -48,9 +48,7 @@ from extractors.devices.tracker import (
 
 PROTOCOL = 3
 HEADER = struct.Struct(">HHIBBBBHH")
-MOST_BODY = 4096
-"""Bytes of the largest body that is believed; more is no packet."""
-
+MOST_BODY = 4096  # Bytes of the largest body that is believed; more is no packet.
 SYSTEM_STATUS = struct.Struct(">BBBBB6sBBBH")
 BIRD_STATUS_SIZE = 70
 BUTTONS = 0x80
@@ -272,9 +270,7 @@ _BY_CODE = {each.code: each for each in FORMATS.values()}
 PORTS = {"tcp": 6000, "udp": 5000}
 REPLY_S = 1.0
 ATTEMPTS = 3
-SILENCE_S = 2.0
-"""A server that sends nothing for so long is lost [s]."""
-
+SILENCE_S = 2.0  # A server that sends nothing for so long is lost [s].
 SEQUENCES = 0x10000
 
 

@@ -24,8 +24,7 @@ BLOCK = struct.Struct("<IIB")
 STAMPS = struct.Struct("<ddq")
 HEAD, FRAME, EVENT, END = range(4)
 NO_CYCLE = -1
-MOST_BYTES = 1 << 24
-"""Payload of the largest block that is believed."""
+MOST_BYTES = 1 << 24  # Payload of the largest block that is believed.
 
 
 class RecordingWriter:
@@ -218,8 +217,7 @@ def _values(description: Description) -> dict[str, Any]:
 PARTS = ("x", "y", "z", "qx", "qy", "qz", "qw", "valid")
 END_EFFECTORS = ("hand", "foot", "head")
 SIDES = ("right", "left")
-FEWEST = 20
-"""Frames of a connection through which a line is laid; fewer keep their arrival."""
+FEWEST = 20  # Frames of a connection through which a line is laid; fewer keep their arrival.
 
 
 @dataclass(frozen=True)

@@ -23,12 +23,8 @@ from capar.model.capture import Capture
 from capar.model.errors import DeviceError, UnknownNameError
 from extractors.devices.lines import BITS
 
-IDLE_S = 0.02
-"""Longest wait for anything [s]."""
-
-TICK_S = 0.002
-"""How often a serial line that has something to send is attended to [s]."""
-
+IDLE_S = 0.02  # Longest wait for anything [s].
+TICK_S = 0.002  # How often a serial line that has something to send is attended to [s].
 HELD_UP_S = 0.25
 """A simulator that did not run for longer was held up by its computer [s]: its clock stood still,
 too. Else it would send at once what a line carries in all that time, and ports overrun by it."""

@@ -14,12 +14,8 @@ from jaxtyping import Float
 from capar.model.capture import NAME
 from capar.model.errors import DeviceError, UnknownNameError
 
-RETRY_S = 0.5
-"""Pause between two attempts to reach a device that went away [s]."""
-
-POLL_S = 0.1
-"""Longest wait for a device's next bytes before anything else is attended to [s]."""
-
+RETRY_S = 0.5  # Pause between two attempts to reach a device that went away [s].
+POLL_S = 0.1  # Longest wait for a device's next bytes before anything else is attended to [s].
 FLAGS = {"yes": True, "no": False}
 
 

@@ -24,9 +24,7 @@ COOKIE_SIZE = 24
 MAJOR = b"vrpn: ver. 07."
 HEADER = struct.Struct(">6i")
 ALIGN = 8
-MOST_PAYLOAD = 65536
-"""Bytes of the largest payload that is believed."""
-
+MOST_PAYLOAD = 65536  # Bytes of the largest payload that is believed.
 SENDER_DESCRIPTION = -1
 TYPE_DESCRIPTION = -2
 POSE = struct.Struct(">2i7d")
@@ -158,16 +156,11 @@ class MessageParser:
 
 PORT = 3883
 COOKIE_S = 3.0
-PING_S = 1.0
-"""How often the server is asked whether it is there [s]."""
-
-SILENCE_S = 5.0
-"""A server that answers nothing for so long is lost [s]."""
-
+PING_S = 1.0  # How often the server is asked whether it is there [s].
+SILENCE_S = 5.0  # A server that answers nothing for so long is lost [s].
 NORM_TOLERANCE = 0.05
 OURS = "capar"
-PING, PONG = 0, 1
-"""Our numbers of the types that we send."""
+PING, PONG = 0, 1  # Our numbers of the types that we send.
 
 UP = {
     "z": Rotation.identity(),
@@ -303,9 +296,7 @@ class VrpnTracker(LiveTracker):
 
 
 SENDER = 0
-TYPES = {3: POSE_TYPE, 4: PING_TYPE, 5: PONG_TYPE}
-"""The server's own numbers of its types."""
-
+TYPES = {3: POSE_TYPE, 4: PING_TYPE, 5: PONG_TYPE}  # The server's own numbers of its types.
 SERVER_POSE, SERVER_PING, SERVER_PONG = TYPES
 
 

@@ -20,9 +20,7 @@ from extractors.bodies.poses import rotation_matrices
 from extractors.signals.intervals import frame_rate
 from extractors.thresholds import Thresholds
 
-SAMPLES = 16
-"""So many frames of each stretch are compared [1]."""
-
+SAMPLES = 16  # So many frames of each stretch are compared [1].
 SHIFT = {"xyzw": ("wxyz", -1), "wxyz": ("xyzw", 1)}
 """The other order of each, and how far components w x y z shift where that one is right."""
 

@@ -16,12 +16,8 @@ from jaxtyping import Float
 from capar.model.capture import Source
 from capar.model.errors import FileError
 
-EXPANDED_LIMIT = 1 << 30
-"""Bytes that a compressed file may expand to [B]."""
-
-HEAD = 4096
-"""Bytes by which a format is recognised [B]."""
-
+EXPANDED_LIMIT = 1 << 30  # Bytes that a compressed file may expand to [B].
+HEAD = 4096  # Bytes by which a format is recognised [B].
 _DAMAGE = (EOFError, OSError, lzma.LZMAError, zlib.error, ValueError)
 
 

@@ -236,15 +236,9 @@ def recognise(names: Iterable[str]) -> Convention:
 HEIGHT_M = (0.85, 2.0)
 """How far the head's joint or markers are above the feet of people of 1.0 to 2.2 m [m]."""
 
-USUAL_M = 1.4
-"""That height of an adult of whom nothing is known [m]."""
-
-STATURE_M = (1.0, 2.2)
-"""How tall people are, from children of four years on [m]."""
-
-USUAL_STATURE_M = 1.7
-"""How tall an adult is of whom nothing is known [m]."""
-
+USUAL_M = 1.4  # That height of an adult of whom nothing is known [m].
+STATURE_M = (1.0, 2.2)  # How tall people are, from children of four years on [m].
+USUAL_STATURE_M = 1.7  # How tall an adult is of whom nothing is known [m].
 CLEAR = 2.0
 """The upward axis is clear if the body is so many times longer along it than along another."""
 
@@ -263,9 +257,7 @@ PARTS = {
 }  # fmt: skip
 """What hands and feet consist of, in the words of names; those that act for the whole first."""
 
-AMBIGUOUS = {"index", "middle", "ring", "little"}
-"""Words for fingers that name other things too."""
-
+AMBIGUOUS = {"index", "middle", "ring", "little"}  # Words for fingers that name other things too.
 WHOLES = {"hand": ("hand", "wrist"), "foot": ("foot", "ankle")}
 """Words that name a hand or foot as a whole, and not a part of it."""
 
@@ -415,9 +407,7 @@ def standing(recording: Recording) -> Standing | None:
 
 Spelled = Mapping[str, list[tuple[str, str]]]
 
-LEAST_NAMES = 4
-"""A convention of which fewer names are there is not taken to be followed."""
-
+LEAST_NAMES = 4  # A convention of which fewer names are there is not taken to be followed.
 LEAST_PARTS = 4
 """Names that tell a part, such as ``middle`` or ``back``, and no side, are of a body only beside
 so many other parts of it."""
@@ -427,8 +417,7 @@ FOLLOWED_SHARE = 0.2
 
 SIDES = ("right", "left")
 
-BY_WORDS = "its words"
-"""What a name is known by that no convention knows."""
+BY_WORDS = "its words"  # What a name is known by that no convention knows.
 
 
 @dataclass(frozen=True, slots=True)

@@ -172,9 +172,7 @@ def check_rate(times: Float[np.ndarray, "frames"], options: Mapping[str, Any]) -
         )
 
 
-_FORMS = ("%Y-%m-%d, %H:%M:%S.%f", "%Y-%m-%d, %H:%M:%S")
-"""Those of Qualisys, beside ISO 8601."""
-
+_FORMS = ("%Y-%m-%d, %H:%M:%S.%f", "%Y-%m-%d, %H:%M:%S")  # Those of Qualisys, beside ISO 8601.
 EARLIEST = datetime(1990, 1, 1, tzinfo=UTC)
 """Stamps since 1970 that are earlier count from when a computer or a simulation started."""
 

@@ -8,21 +8,14 @@ from typing import Any
 
 from capar.model.errors import DeviceError
 
-HOST = "127.0.0.1"
-"""Nobody else in the network may listen."""
-
+HOST = "127.0.0.1"  # Nobody else in the network may listen.
 ORIGINS = (None, re.compile(r"https?://(localhost|127\.0\.0\.1|\[::1\])(:\d{1,5})?"))
 """Who may listen: programs, which name no origin, and pages that this computer serves. A page of
 another site, open in a browser here, reaches loopback too; the browser says where it is from."""
 
-LATEST = 1000
-"""So many events a program that connects late is still told [1]."""
-
-WAITING = 10_000
-"""A program that has so many events not read yet is disconnected [1]."""
-
-LAST_S = 2.0
-"""So long programs may take to read the last events once the recording has ended [s]."""
+LATEST = 1000  # So many events a program that connects late is still told [1].
+WAITING = 10_000  # A program that has so many events not read yet is disconnected [1].
+LAST_S = 2.0  # So long programs may take to read the last events once the recording has ended [s].
 
 
 class EventSocket:

@@ -290,8 +290,7 @@ def _stands(body: Sensor | TagObject) -> bool:
     return bool(len(seen) and np.ptp(seen, axis=0).max() < STANDS_M)
 
 
-STANDS_M = 0.02
-"""What has not gone farther in the rig's own recording stands [m]: noise is less."""
+STANDS_M = 0.02  # What has not gone farther in the rig's own recording stands [m]: noise is less.
 
 
 def _first_pose(body: Sensor | TagObject) -> tuple[np.ndarray, np.ndarray]:
@@ -301,8 +300,7 @@ def _first_pose(body: Sensor | TagObject) -> tuple[np.ndarray, np.ndarray]:
     return body.stream.positions[known[0]], body.stream.orientations[known[0]]
 
 
-SHORTEST_S = 1.0
-"""A shorter lead-in shows neither noise at rest nor what rests on what [s]."""
+SHORTEST_S = 1.0  # A shorter lead-in shows neither noise at rest nor what rests on what [s].
 
 
 def lead_in(capture: Capture, seconds: float) -> Capture:

@@ -86,9 +86,7 @@ def event_row(event: SegmentEvent) -> dict[str, Any]:
     }
 
 
-Key = tuple[object, ...]
-"""What an interval is of: its kind and its bodies, whenever it is."""
-
+Key = tuple[object, ...]  # What an interval is of: its kind and its bodies, whenever it is.
 AT_THE_END = (ReleaseSpeed, Rides)
 """Kinds that name a contact by its first frame and are measured up to its end."""
 
@@ -414,8 +412,7 @@ def _content(segment: Segment) -> tuple[object, ...]:
     return segment.name, segment.objects, segment.first, segment.last
 
 
-SAME_PLACE_MM = 10
-"""Postures at rest nearer to each other than this along every axis are one [mm]."""
+SAME_PLACE_MM = 10  # Postures at rest nearer to each other than this along every axis are one [mm].
 
 
 class RuleMemory:

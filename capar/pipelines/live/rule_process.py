@@ -26,17 +26,12 @@ from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import Profile
 from capar_rules.pars.inference import Inference, infer
 
-OWN_ASKS = 400
-"""So often this process asks the rules itself [1]: in three minutes or more."""
-
+OWN_ASKS = 400  # So often this process asks the rules itself [1]: in three minutes or more.
 ASKS = 800
 """So often a worker is asked before another one takes over [1]: some ten megabytes of terms."""
 
-AHEAD = 40
-"""The next worker is started so many questions before [1]: in twenty seconds or so."""
-
-WARMING = 3
-"""Who has answered so often has read the rules for good [1]."""
+AHEAD = 40  # The next worker is started so many questions before [1]: in twenty seconds or so.
+WARMING = 3  # Who has answered so often has read the rules for good [1].
 
 _START = (
     "import runpy, sys; sys.path.insert(0, sys.argv[1]); "

@@ -19,8 +19,7 @@ from extractors.readers.recording import UNITS, Recording
 from extractors.readers.schema.capture import Tracked
 from extractors.thresholds import Thresholds
 
-FLAT_M = 1e-4
-"""Markers whose second principal spread is below this lie on a line [m]."""
+FLAT_M = 1e-4  # Markers whose second principal spread is below this lie on a line [m].
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,11 +144,8 @@ def check_fit(
     )
 
 
-LARGEST_M = 100.0
-"""No room for motion capture spans more [m]."""
-
-SMALLEST_M = 0.005
-"""Nor do sensors and objects together span less [m]."""
+LARGEST_M = 100.0  # No room for motion capture spans more [m].
+SMALLEST_M = 0.005  # Nor do sensors and objects together span less [m].
 
 
 @dataclass(frozen=True, eq=False)
@@ -453,20 +449,11 @@ def _mean_place(
     return np.asarray(poses.inv().apply(points[both]).mean(axis=0))
 
 
-GAP_S = Thresholds().gap_s
-"""Nothing is interpolated between samples further apart than this [s]."""
-
-GAP_STEPS = 1.5
-"""Or than so many steps of a source that is slower."""
-
-SAME_S = 1e-6
-"""Time stamps that differ by less are one [s]."""
-
-FAR_RATE = 4.0
-"""A rate that differs from the recorded ones by more than this factor is doubtful."""
-
-LARGEST_FRAMES = 1e7
-"""Frames that a capture may have: more than a day at 100 Hz."""
+GAP_S = Thresholds().gap_s  # Nothing is interpolated between samples further apart than this [s].
+GAP_STEPS = 1.5  # Or than so many steps of a source that is slower.
+SAME_S = 1e-6  # Time stamps that differ by less are one [s].
+FAR_RATE = 4.0  # A rate that differs from the recorded ones by more than this factor is doubtful.
+LARGEST_FRAMES = 1e7  # Frames that a capture may have: more than a day at 100 Hz.
 
 
 def resampled(

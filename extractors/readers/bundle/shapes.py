@@ -31,9 +31,7 @@ from extractors.readers.schema.capture import (
 )
 from extractors.readers.schema.entry import expanded
 
-MESH_LIMIT = 256 << 20
-"""Bytes that a mesh file may hold or expand to [B]."""
-
+MESH_LIMIT = 256 << 20  # Bytes that a mesh file may hold or expand to [B].
 FORMATS = ("stl", "ply", "obj", "off", "glb", "3mf", "dae", "x3d", "gltf")
 """Suffixes that are tried; the last four need what trimesh asks for."""
 
@@ -122,15 +120,11 @@ def _check_xml(path: Path, data: bytes) -> None:
         )
 
 
-LARGEST_M = 20.0
-"""No shape is longer [m]."""
-
+LARGEST_M = 20.0  # No shape is longer [m].
 STRETCH_M = 0.01
 """A bone changes its length by no more [m]: joints that are tracked by markers shift less."""
 
-Mesh = tuple[np.ndarray, np.ndarray]
-"""Corners [m] and faces."""
-
+Mesh = tuple[np.ndarray, np.ndarray]  # Corners [m] and faces.
 Described = tuple[np.ndarray, np.ndarray, str]
 """Corners [m], faces, and what the shape is in words."""
 
@@ -365,9 +359,7 @@ _MAKERS: dict[str, Callable[[Any, Frame], Described]] = {
 """What builds each kind of shape of the schema."""
 
 
-NEAR_S = 0.1
-"""An object must be seen this near the stated time [s]."""
-
+NEAR_S = 0.1  # An object must be seen this near the stated time [s].
 WorldPose = tuple[Float[np.ndarray, "3"], Float[np.ndarray, "4"]]
 
 

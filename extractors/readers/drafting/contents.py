@@ -32,9 +32,7 @@ from extractors.readers.recording import Recording
 Track = Float[np.ndarray, "frames 3"]
 Points = Mapping[str, Track]
 
-RIGID_M = 0.004
-"""Markers whose distance varies less are of one rigid body [m]."""
-
+RIGID_M = 0.004  # Markers whose distance varies less are of one rigid body [m].
 NEAR_M, NAMED_NEAR_M = 0.5, 2.0
 """And they are no further apart than this [m]; the latter if their names begin alike."""
 
@@ -42,11 +40,8 @@ RIDING_M, SEGMENT_M = 0.020, 0.3
 """The distance of two markers on the skin of one segment varies by no more than the former, and is
 no more than the latter [m]."""
 
-FIXED_M = 0.02
-"""What never goes further than this from where it usually is does not move [m]."""
-
-LEAST_PARTS = 3
-"""A body is in a file if so many of its parts have a joint or marker."""
+FIXED_M = 0.02  # What never goes further than this from where it usually is does not move [m].
+LEAST_PARTS = 3  # A body is in a file if so many of its parts have a joint or marker.
 
 HANGING = {
     "pelvis": ("thigh", "shank", "foot"),
@@ -60,21 +55,15 @@ SPREAD = 0.25
 BREADTH = ("trunk", "pelvis", "thigh", "upper_arm", "head")
 """Parts whose right and left lie next to each other, whatever hands and feet do."""
 
-STANDING_MPS = 0.25
-"""A foot's lowest point that is slower than this stands [m/s]."""
-
+STANDING_MPS = 0.25  # A foot's lowest point that is slower than this stands [m/s].
 LOW_M = 0.05
 """... if it is no higher above the lowest than this [m]: a foot may be held still in the air."""
 
-SHARES = (0.05, 0.95)
-"""The range in which feet stand is between these shares of their frames [1]."""
-
+SHARES = (0.05, 0.95)  # The range in which feet stand is between these shares of their frames [1].
 TOLERANCE_M = (0.010, 0.040)
 """The least and largest tolerance of contact that a floor is drafted with [m]."""
 
-MARGIN_M = 1.0
-"""How far the floor goes beyond where feet are [m]."""
-
+MARGIN_M = 1.0  # How far the floor goes beyond where feet are [m].
 SEEN_SHARE = 0.4
 """A marker seen in a smaller share of the frames than the one of its limb that is seen most often
 is left out: it would blind the whole sensor [1]."""
@@ -83,8 +72,7 @@ RESIDUAL_M, LOOSE_M = 0.010, 0.030
 """Median distances of markers from a rigid arrangement: the usual limit, and what no segment has
 [m]."""
 
-STRETCH = 1.5
-"""The stated limit is the measured residual times this [1]."""
+STRETCH = 1.5  # The stated limit is the measured residual times this [1].
 
 STAGES: Mapping[str, Sequence[Sequence[str]]] = {
     "hand": (

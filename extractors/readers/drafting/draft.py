@@ -37,15 +37,10 @@ from extractors.readers.recording import UNITS, Recording
 EDIT = "# EDIT:"
 """What marks a line that a person must look at."""
 
-FOOT_RADIUS_M = 0.03
-"""Radius of a foot's stand-in: half the thickness of a foot [m]."""
-
+FOOT_RADIUS_M = 0.03  # Radius of a foot's stand-in: half the thickness of a foot [m].
 HAND_RADIUS_M = 0.04
-FLOOR_M = 0.02
-"""Thickness of a floor [m]."""
-
-WIDTH = 96
-"""Comments are no longer than this."""
+FLOOR_M = 0.02  # Thickness of a floor [m].
+WIDTH = 96  # Comments are no longer than this.
 
 
 @dataclass(frozen=True)

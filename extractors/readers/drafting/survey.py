@@ -11,14 +11,9 @@ from jaxtyping import Float
 from capar.model import geometry
 from capar.model.capture import Stream
 
-REST_S = 0.5
-"""Noise is measured in windows of this length [s]."""
-
-DEGREE = 3
-"""Degree of the polynomial that motion within a window is fitted by."""
-
-SHORTEST = 8
-"""Frames that a window has at least, so that noise is left after the fit."""
+REST_S = 0.5  # Noise is measured in windows of this length [s].
+DEGREE = 3  # Degree of the polynomial that motion within a window is fitted by.
+SHORTEST = 8  # Frames that a window has at least, so that noise is left after the fit.
 
 
 @dataclass(frozen=True, slots=True)

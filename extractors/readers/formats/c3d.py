@@ -169,8 +169,7 @@ class _Section:
         return np.frombuffer(data, {1: "u1", 2: f"{self.order}u2"}[kind]).astype(float)
 
 
-_ROTATION = 17
-"""Numbers a rotation: a matrix of 4 x 4 by columns, and its reliability."""
+_ROTATION = 17  # Numbers a rotation: a matrix of 4 x 4 by columns, and its reliability.
 
 
 def recognises(path: Path, head: bytes) -> bool:
