@@ -145,10 +145,10 @@ def _window_at(cursor: Cursor) -> Window | None:
     if cursor.accept("("):
         return _in_brackets(cursor)
     start = cursor.at
-    for words, between in _BETWEEN.items():
-        if cursor.accept(words):
+    for word, between in _BETWEEN.items():
+        if cursor.accept(word):
             found = _span(cursor, *between)
-            if found is not None or words == "between":
+            if found is not None or word == "between":
                 return found
             cursor.at = start
     for words, read in _WINDOWS:

@@ -10,7 +10,7 @@ from capar.model.par import Call
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
-from kb.language import Instruction, Question, parse, vocabulary
+from kb.language import Instruction, Question, parse, sentence
 from kb.language.cursor import SentenceError
 from kb.language.question import Ask
 from kb.language.vocabulary import EFFECTORS, EVERYTHING, PREPOSITIONS, Vocabulary
@@ -46,7 +46,7 @@ def steps(draw: st.DrawFn) -> tuple[Instruction, Vocabulary]:
 @given(steps())
 def test_a_step_comes_back_from_its_sentence(case: tuple[Instruction, Vocabulary]) -> None:
     step, vocabulary = case
-    assert parse(vocabulary(step, vocabulary), vocabulary) == step
+    assert parse(sentence(step, vocabulary), vocabulary) == step
 
 
 @pytest.mark.parametrize("words", WORDS, ids=lambda each: each.name)
@@ -55,7 +55,7 @@ def test_every_primitive_comes_back_over_one_object_and_two(
     words: PrimitiveWords, count: int
 ) -> None:
     step = Instruction(Call(words.name, ("mug", "blue_cup")[:count], "PickUp"), "left_hand")
-    assert parse(vocabulary(step, KNOWN), KNOWN) == step
+    assert parse(sentence(step, KNOWN), KNOWN) == step
 
 
 def test_a_step_of_an_observation_comes_back() -> None:
@@ -64,16 +64,16 @@ def test_a_step_of_an_observation_comes_back() -> None:
     vocabulary = Vocabulary(WORDS, objects)
     assert observation.segments
     for segment in observation.segments:
-        assert parse(vocabulary(segment, vocabulary), vocabulary) == Instruction.of(segment)
+        assert parse(sentence(segment, vocabulary), vocabulary) == Instruction.of(segment)
     for link in observation.complex_par.links:
         for step in link.steps:
-            assert parse(vocabulary(step, vocabulary), vocabulary) == Instruction.of(step)
+            assert parse(sentence(step, vocabulary), vocabulary) == Instruction.of(step)
 
 
 def test_a_sentence_says_the_hand_the_source_and_the_end() -> None:
     value = Instruction(Call("MoveObjTo", ("mug", "head"), "Drink"), "right_hand", "", "table")
     text = "Move the mug to the head from the table with the right hand to drink."
-    assert vocabulary(value) == text
+    assert sentence(value) == text
     assert parse(text) == value
     assert parse("move the mug from the table to the head with the right hand to drink") == value
 
