@@ -184,7 +184,7 @@ def correct(store: Store, address: SegmentAddress, change: Correction, *, by: st
 def _stated(span: Span, capture: str, number: int, made: str) -> list[Quad]:
     node = names.shared("correction", capture, number)
     person = names.shared("person", span.by)
-    told: list[tuple[NamedNode, NamedNode, NamedNode | Literal]] = [
+    stated: list[tuple[NamedNode, NamedNode, NamedNode | Literal]] = [
         (node, TYPE, CAPAR.Correction),
         (node, LABEL, Literal(f"{span.by} on {capture}: {span.name}")),
         (node, CAPAR.ofCapture, Literal(capture)),
@@ -199,7 +199,7 @@ def _stated(span: Span, capture: str, number: int, made: str) -> list[Quad]:
         (person, LABEL, Literal(span.by)),
         *([(node, CAPAR.objects, Literal(span.objects))] if span.objects else []),
     ]
-    return [Quad(s, p, o, GRAPH) for s, p, o in told]
+    return [Quad(s, p, o, GRAPH) for s, p, o in stated]
 
 
 def _spans(rows: Iterable[Sequence[object]]) -> tuple[Span, ...]:
@@ -251,7 +251,7 @@ def _segment(machine: Sequence[Segment], index: int, span: Span) -> Segment:
         basis,
         index=index,
         name=span.name,
-        purpose=basis.purpose if own_name or not _is_the_deed(basis) else "",
+        purpose=basis.purpose if own_name or not _says_what_was_done(basis) else "",
         general=basis.general if own_name else _general(machine, span.name),
         candidates=basis.candidates if own_name and span.name == UNKNOWN else (),
         level=basis.level if own_name else "",
@@ -265,11 +265,11 @@ def _segment(machine: Sequence[Segment], index: int, span: Span) -> Segment:
 
 
 def _general(machine: Sequence[Segment], name: str) -> tuple[str, ...]:
-    """What an action specialises, where another segment of that name tells."""
+    """What an action specialises, by another segment of that name."""
     return next((segment.general for segment in machine if segment.name == name), ())
 
 
-def _is_the_deed(segment: Segment) -> bool:
+def _says_what_was_done(segment: Segment) -> bool:
     """Whether a purpose says what was done in a segment: relations are the same at its end."""
     return segment.features.rel_start == segment.features.rel_end
 
@@ -342,15 +342,15 @@ def _rewritten(
         kept = [each for each in machine[basis] if each[0] not in _REPLACED]
         if span.name != UNKNOWN:
             kept = [each for each in kept if each[1] != CAPAR.UnknownSegment]
-        told = [*kept, *_claimed(span, at, capture)]
-        told += [(CAPAR.next, each) for each in nodes[at + 1 : at + 2]]
+        stated = [*kept, *_claimed(span, at, capture)]
+        stated += [(CAPAR.next, each) for each in nodes[at + 1 : at + 2]]
         yield Quad(graph, CAPAR.segment, node, graph)
-        yield from (Quad(node, predicate, value, graph) for predicate, value in told)
+        yield from (Quad(node, predicate, value, graph) for predicate, value in stated)
         yield from _action(span.name)
 
 
 def _claimed(span: Span, at: int, capture: str) -> Properties:
-    told: Properties = [
+    stated: Properties = [
         (LABEL, Literal(f"{span.ee} {at}: {span.name}")),
         (CAPAR.start, Literal(span.start_s)),
         (CAPAR.end, Literal(span.end_s)),
@@ -359,8 +359,8 @@ def _claimed(span: Span, at: int, capture: str) -> Properties:
         (CAPAR.address, Literal(str(SegmentAddress(span.ee, at, capture)))),
     ]
     if span.name != UNKNOWN:
-        told.append((CAPAR.action, names.shared("action", span.name)))
-    return told + ([(BY, names.shared("person", span.by))] if span.by else [])
+        stated.append((CAPAR.action, names.shared("action", span.name)))
+    return stated + ([(BY, names.shared("person", span.by))] if span.by else [])
 
 
 def _action(name: str) -> Iterator[Quad]:

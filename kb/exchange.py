@@ -89,13 +89,13 @@ def format_of(path: Path | str, given: str | None = None) -> str:
 
     Raises:
         UnknownNameError: No such format, or a name that states none.
-        FileError: The name has no ending that could tell one.
+        FileError: The name has no ending that states one.
     """
     name = given or SUFFIXES.get(Path(path).suffix.lower(), Path(path).suffix)
     if not name:
         *some, last = sorted(FORMATS)
         raise FileError(
-            path, "its name tells no format;", f"add --format: {', '.join(some)} or {last}."
+            path, "its name states no format;", f"add --format: {', '.join(some)} or {last}."
         )
     if name not in FORMATS:
         raise UnknownNameError("format", name, FORMATS)

@@ -17,13 +17,20 @@ from capar.model.observation import SegmentAddress
 from kb.encode import facts, pars, shared
 from kb.encode.shared import ASSOCIATED, BROADER, DERIVED, ENDED, GENERATED, USED, kind_of
 from kb.store import names, statements
-from kb.store.statements import LABEL, PropertyValues, Statements
+from kb.store.statements import LABEL, PropertyValues, Statements, same
 from ontology import CAPAR
 from ontology.namespace import PREFIXES, RDF, TIME, XSD
 
 if TYPE_CHECKING:
     from capar.model.capture import Agent
-    from capar.model.observation import Border, ForceStyle, Observation, ObservedObject, Segment
+    from capar.model.observation import (
+        Border,
+        ForceStyle,
+        JointAction,
+        Observation,
+        ObservedObject,
+        Segment,
+    )
     from capar.model.par import Nlt
 
 THESIS = "thesis"
@@ -110,10 +117,9 @@ class _Encoder:
                 "link",
                 link.ee,
                 {
+                    **same(link, "ee side"),
                     CAPAR.name: link.ee,
-                    CAPAR.ee: link.ee,
                     CAPAR.effectorType: link.kind,
-                    CAPAR.side: link.side,
                     CAPAR.agent: self.performer(link.ee),
                 },
             )
@@ -148,8 +154,7 @@ class _Encoder:
             ASSOCIATED: list(self.agents.values()),
             OF_INTEREST: list(self.objects.values()),
             CAPAR.ruleBase: base,
-            CAPAR.profile: seen.profile,
-            CAPAR.version: seen.version,
+            **same(seen, "profile version"),
             CAPAR.identity: identity(seen),
             CAPAR.performer: performer,
             CAPAR.agent: self.agents[seen.agent.name],
@@ -278,12 +283,11 @@ class _Encoder:
             CAPAR.orientation: statements.vector(seen.orientation),
         }
         properties: PropertyValues = {
+            **same(seen, "name shape"),
             LABEL: seen.name,
-            CAPAR.name: seen.name,
             CAPAR.kind: shared.kind(self.out, kind_of(seen)),
             CAPAR.tag: TAGS[seen.tag],
             CAPAR.size: statements.vector(seen.size_m),
-            CAPAR.shape: seen.shape,
             CAPAR.assumedFrom: seen.assumed,
             CAPAR.coordinateSystem: self.out.add(names.part(node, "site"), (CAPAR.Site,), site),
             CAPAR.state: states,
@@ -313,22 +317,15 @@ class _Encoder:
         properties: PropertyValues = {
             LABEL: f"{seen.ee} {seen.index}: {seen.name}",
             CAPAR.ofLink: self.links[seen.ee],
-            CAPAR.ee: seen.ee,
-            CAPAR.index: seen.index,
+            **same(seen, "ee index general objects purpose"),
+            **_interval(seen),
             CAPAR.address: str(SegmentAddress(seen.ee, seen.index, self.seen.capture)),
-            CAPAR.firstFrame: seen.first,
-            CAPAR.lastFrame: seen.last,
-            CAPAR.start: float(seen.start_s),
-            CAPAR.end: float(seen.end_s),
-            CAPAR.duration: float(seen.end_s - seen.start_s),
             CAPAR.action: action,
             CAPAR.namedBy: rules.get(seen.name),
-            CAPAR.general: " ".join(seen.general),
             CAPAR.specialises: general,
             CAPAR.candidate: shared.actions(out, seen.candidates),
             CAPAR.failedAt: seen.level,
             CAPAR.possesses: seen.possessed,
-            CAPAR.objects: " ".join(seen.objects),
             CAPAR.object: self.known(seen.objects),
             CAPAR.dominant: self.known(seen.objects[:1]),
             CAPAR.subordinate: self.known(seen.objects[1:]),
@@ -356,7 +353,6 @@ class _Encoder:
                 for index, (looked_at, when) in enumerate(seen.looks)
                 if looked_at in self.objects
             ],
-            CAPAR.purpose: seen.purpose,
             CAPAR.next: follows,
             MEETS: follows,
             GENERATED: self.about,
@@ -388,23 +384,18 @@ class _Encoder:
                 "joint",
                 index,
                 {
+                    **same(seen, "name objects"),
+                    **_interval(seen),
                     LABEL: f"{', '.join(seen.who)}: {seen.name}",
                     CAPAR.index: index,
                     CAPAR.action: shared.action(self.out, seen.name),
-                    CAPAR.name: seen.name,
                     CAPAR.effectors: " ".join(seen.who),
-                    CAPAR.objects: " ".join(seen.objects),
                     CAPAR.dominant: self.known(seen.objects[:1]),
                     CAPAR.object: self.known(seen.objects),
                     CAPAR.standsFor: [
                         pars.segment_node(self.about, ee, number)
                         for ee, number in zip(seen.ees, seen.segments, strict=True)
                     ],
-                    CAPAR.firstFrame: seen.first,
-                    CAPAR.lastFrame: seen.last,
-                    CAPAR.start: float(seen.start_s),
-                    CAPAR.end: float(seen.end_s),
-                    CAPAR.duration: float(seen.end_s - seen.start_s),
                     GENERATED: self.about,
                 },
             )
@@ -430,12 +421,9 @@ class _Encoder:
                     CAPAR.index: index,
                     CAPAR.agent: self.performer(value.ee),
                     CAPAR.ofSegment: ended.get((value.ee, value.frame, value.action)),
-                    CAPAR.ee: value.ee,
+                    **same(value, "ee purpose side frame"),
                     CAPAR.ofAction: shared.action(self.out, value.action),
                     CAPAR.actionName: value.action,
-                    CAPAR.purpose: value.purpose,
-                    CAPAR.side: value.side,
-                    CAPAR.frame: value.frame,
                     CAPAR.dominant: self.objects.get(value.dominant),
                     CAPAR.dominantKind: self.kind_named(value.dominant) if value.ee_nlt else None,
                     CAPAR.goal: self.objects.get(value.goal),
@@ -486,8 +474,7 @@ class _Encoder:
                     CAPAR.agent: self.performer(value.ee),
                     CAPAR.ofAction: shared.action(self.out, value.action),
                     CAPAR.actionName: value.action,
-                    CAPAR.purpose: value.purpose,
-                    CAPAR.ee: value.ee,
+                    **same(value, "purpose ee"),
                     CAPAR.velStyle: statements.vector(value.velocity),
                     CAPAR.pathStyle: statements.path(value.path) if value.path else None,
                     GENERATED: self.about,
@@ -499,6 +486,17 @@ class _Encoder:
 
 def _nlt(value: "Nlt | None") -> Literal | None:
     return statements.nlt(value) if value else None
+
+
+def _interval(seen: "Segment | JointAction") -> PropertyValues:
+    """Frames and times [s]."""
+    return {
+        CAPAR.firstFrame: seen.first,
+        CAPAR.lastFrame: seen.last,
+        CAPAR.start: float(seen.start_s),
+        CAPAR.end: float(seen.end_s),
+        CAPAR.duration: float(seen.end_s - seen.start_s),
+    }
 
 
 def border_kind(word: str) -> NamedNode:

@@ -21,7 +21,7 @@ from capar.model.par import (
 )
 from kb.encode.shared import DERIVED, GENERATED, action, actions, conditions, features
 from kb.store import names, statements
-from kb.store.statements import LABEL, PropertyValues, Statements
+from kb.store.statements import LABEL, PropertyValues, Statements, same
 from ontology import CAPAR
 from ontology.namespace import ALLEN
 
@@ -57,12 +57,11 @@ def upar(out: Statements, value: Upar) -> NamedNode:
     node = upar_node(value)
     properties: PropertyValues = {
         LABEL: value.name,
-        CAPAR.name: value.name,
+        **same(value, "name general"),
         CAPAR.ofAction: action(out, value.name),
         CAPAR.parameters: " ".join(value.objects),
         CAPAR.arity: len(value.objects),
         CAPAR.agentParameter: value.agent,
-        CAPAR.general: " ".join(value.general),
         CAPAR.specialises: actions(out, value.general),
         CAPAR.applicability: conditions(out, value.applicability),
         CAPAR.preparation: _preparation(out, out.share, node, value.preparation),
@@ -99,13 +98,11 @@ def _ipar(out: Statements, value: Ipar, segment: "Segment", nodes: PropertyValue
         **nodes,
         CAPAR.name: value.upar,
         CAPAR.ofAction: action(out, value.upar),
-        CAPAR.ee: value.ee,
-        CAPAR.objects: " ".join(value.objects),
+        **same(value, "ee objects posture"),
         CAPAR.start: float(value.start_s),
         CAPAR.core: _core(out, out.add, node, value.core),
         CAPAR.preparation: _preparation(out, out.add, node, value.preparation),
         CAPAR.postAssertion: conditions(out, value.post_assertions),
-        CAPAR.posture: value.posture,
         CAPAR.parentName: value.parent,
         DERIVED: segment_node(out.about, segment.ee, segment.index),
         GENERATED: out.about,
@@ -150,15 +147,12 @@ def _core(out: Statements, add: Add, of: NamedNode, value: CoreSemantics) -> Nam
     ends = [each for point in value.path for each in point]
     properties: PropertyValues = {
         CAPAR.motion: MOTIONS[value.motion],
-        CAPAR.moved: value.moved,
-        CAPAR.causal: value.causal,
+        **same(value, "moved causal purpose manner"),
         CAPAR.forceOn: " ".join(value.force),
         CAPAR.pathEnds: statements.vector(ends) if ends else None,
-        CAPAR.purpose: value.purpose,
         CAPAR.enables: actions(out, value.enables),
         CAPAR.termination: conditions(out, value.termination),
         CAPAR.duration: None if value.duration_s is None else float(value.duration_s),
-        CAPAR.manner: value.manner,
         CAPAR.constraint: add(names.part(node, "constraint"), (CAPAR.Constraint,), constraint),
     }
     return add(node, (CAPAR.CoreSemantics,), properties)
@@ -227,11 +221,9 @@ def _enact(out: Statements, observation: "Observation", node: NamedNode, name: s
             CAPAR.index: index,
             CAPAR.ofAction: action(out, step.action),
             CAPAR.name: step.action,
-            CAPAR.objects: " ".join(step.objects),
+            **same(step, "objects purpose posture"),
             CAPAR.share: float(step.share),
             CAPAR.begin: float(step.begin),
-            CAPAR.purpose: step.purpose,
-            CAPAR.posture: step.posture,
             CAPAR.segmentNumbers: " ".join(map(str, step.segments)),
             CAPAR.standsFor: _segments(out, ee, step, ees),
             CAPAR.nextStep: nodes.get((ee, index + 1)),

@@ -487,7 +487,7 @@ def lexical_facts(
         seen: What was observed.
         cases: What shipped cases show.
         verbs: Further verbs that are asked about.
-        classes: Whether classes and their members are told; else only those verbs are.
+        classes: Whether classes and their members are stated; else only those verbs are.
     """
     asked = set(verbs) | (_every_verb(words, members) if classes else set())
     lines = {

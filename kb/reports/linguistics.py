@@ -85,7 +85,7 @@ class VerbReport:
     verb: str
     how: How
     primitives: tuple[str, ...]
-    """Those that address it, or tell it in general, sorted."""
+    """Those that address it, or what is more general, sorted."""
 
     lacks: tuple[str, ...]
     """What it would take, in words; empty if it is addressed."""

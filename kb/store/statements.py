@@ -81,6 +81,12 @@ def terms(value: Value | Iterable[NamedNode] | Iterable[Literal]) -> list[Term]:
     return list(value)
 
 
+def same(value: object, fields: str) -> dict[NamedNode, Value]:
+    """Properties that are named like the fields of a value; several words are one text."""
+    found = {getattr(CAPAR, name): getattr(value, name) for name in fields.split()}
+    return {k: " ".join(v) if isinstance(v, tuple) else v for k, v in found.items()}
+
+
 def insertion(quads: Iterable[Quad]) -> str:
     """Statements as a SPARQL update that adds them."""
     graphs: dict[str, list[str]] = {}

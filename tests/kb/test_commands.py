@@ -305,8 +305,8 @@ def test_a_file_keeps_its_meaning_even_if_it_is_called_like_a_query(
     missing = ask("query", "nothere.rq")
     assert missing.returncode == 2
     assert "capar: nothere.rq: cannot be used: No such file or directory. Name" in missing.stderr
-    Path("folder_test_query_command.rq").mkdir()
-    wrong = ask("query", "folder_test_query_command.rq")
+    Path("folder.rq").mkdir()
+    wrong = ask("query", "folder.rq")
     assert wrong.returncode == 2
     assert "capar: folder.rq: cannot be used: Is a directory. Name a file" in wrong.stderr
     Path("latin.rq").write_bytes("ASK {} # é".encode("latin-1"))
