@@ -5,6 +5,7 @@ from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from itertools import combinations
 from operator import attrgetter
 from typing import Any, cast
@@ -66,7 +67,7 @@ from extractors.contact.touch_distances import forget_touchable, touching_part
 from extractors.faults.faults import faults
 from extractors.motion.impacts import closing_speed, falls, release_speed
 from extractors.motion.motion_edges import motion_edges
-from extractors.motion.object_motion import Floor, moving, rest_poses, resting
+from extractors.motion.object_motion import Floor, RestPose, moving, rest_poses, resting
 from extractors.motion.phases import (
     leaning,
     lengthwise,
@@ -101,17 +102,23 @@ from extractors.signals.intervals import Interval, intervals
 from extractors.signals.zero_crossings import horizon_frames, pauses, zero_crossings
 from extractors.thresholds import Thresholds
 
-FramesByBody = Mapping[str, Sequence[int]]
-"""Frames by body, ascending."""
+PASSED = ("inside", "above")
+"""Arrangements that a body may pass through."""
+
+SHIFTS, NEAR = "shifts", "near"
+"""An end-effector goes to another place on what it touches; it is within reach, without touch."""
+
+ANY = "any"
+"""What an empty field of a purpose is in a fact."""
 
 
-def boundary_frames(facts: Iterable[Fact], acting: Iterable[str], last_frame: int) -> FramesByBody:
+def boundary_frames(
+    facts: Iterable[Fact], acting: Iterable[str], last_frame: int
+) -> Mapping[str, Sequence[int]]:
     """For each end-effector every frame where something that concerns it begins or ends.
 
     For each object that it touches, those of these frames at which it touches it, with the one
-    before and the one after.
-
-    ``acting``: the end-effectors. ``last_frame``: the capture's last frame.
+    before and the one after. Frames are ascending.
     """
     frames: dict[str, set[int]] = defaultdict(set)
     touches: dict[str, list[Touching]] = defaultdict(list)
@@ -128,239 +135,290 @@ def boundary_frames(facts: Iterable[Fact], acting: Iterable[str], last_frame: in
         out[ee] |= own
         ordered = sorted(own)
         for touch in touches[ee]:
-            out[touch.other].update(_around(ordered, touch.first, touch.last))
+            low = max(bisect_left(ordered, touch.first) - 1, 0)
+            out[touch.other].update(ordered[low : bisect_right(ordered, touch.last) + 1])
     return {name: tuple(sorted(out[name])) for name in sorted(out)}
 
 
-def _around(ordered: Sequence[int], first: int, last: int) -> Sequence[int]:
-    low = max(bisect_left(ordered, first) - 1, 0)
-    return ordered[low : bisect_right(ordered, last) + 1]
+@dataclass(frozen=True, eq=False)
+class _Trial:
+    """A capture with its bodies and what its measuring decides by."""
 
+    capture: Capture
+    bodies: Bodies
+    calibration: Calibration
+    limits: Thresholds
+    since: Sums
+    whole: bool
+    """Whether this is a whole recording, and no part of one."""
 
-PASSED = ("inside", "above")
-"""Arrangements that a body may pass through."""
+    @cached_property
+    def acting(self) -> dict[str, BodyGeometry]:
+        """The acting end-effectors by name."""
+        return {each.name: self.bodies.sensors[each.name] for each in self.capture.acting}
 
-SHIFTS = "shifts"
-"""That an end-effector goes to another place on what it touches."""
+    @cached_property
+    def mobile(self) -> tuple[str, ...]:
+        """Names of the objects that can be moved."""
+        return tuple(e.name for e in self.capture.objects if e.tag is TagType.MOBILE)
 
-NEAR = "near"
-"""That it is within reach of another for a while and does not touch it."""
+    def upright(self, name: str) -> Vector:
+        """The axis of a body that points up where it first rests, in its own frame."""
+        return np.array(self.calibration.body(name).upright)
 
+    def floor(self, name: str) -> Floor:
+        """The floor of motion of an object."""
+        known = self.calibration.tag_object(name)
+        return Floor(known.motion_floor_m, known.motion_floor_rad)
 
-def handling(
-    capture: Capture,
-    bodies: Bodies,
-    known: Iterable[Fact],
-    calibration: Calibration,
-    thresholds: Thresholds,
-    guides: Mapping[str, Guide],
-    since: Sums = FROM_THE_BEGINNING,
-    *,
-    whole: bool = False,
-) -> tuple[Fact, ...]:
-    """Rest, turning points, leaning, falls, arrangements and places of handled bodies.
+    def rests(self, name: str) -> tuple[RestPose, ...]:
+        """The places where an object rests."""
+        return rest_poses(self.bodies.objects[name].poses, self.floor(name), self.limits)
 
-    Handled are the acting end-effectors and every mobile object that one of them touches.
+    def spans(self, holds: Holds, one: BodyGeometry) -> list[Interval]:
+        """The intervals in which something holds of a body, as those of contacts are made."""
+        return intervals(
+            holds,
+            one.poses.smooth.times,
+            dropout_s=self.limits.dropout_s,
+            minimum_s=self.limits.contact_minimum_s,
+        )
 
-    ``since``: ways and turns before, of which this capture is the continuation. ``whole``: whether
-    this is a whole recording, and no part of one.
-    """
-    seen = list(known)
-    touches = [fact for fact in seen if isinstance(fact, Touching)]
-    acting = [sensor.name for sensor in capture.acting]
-    held = {touch.other for touch in touches if touch.body in acting}
-    hands = {sensor.name: bodies.sensors[sensor.name] for sensor in capture.acting}
-    things = bodies.objects
-    mobile = [
-        thing for thing in capture.objects if thing.tag is TagType.MOBILE and thing.name in held
-    ]
-    mobiles = {body.name for body in mobile}
-    upright = {thing.name: np.array(thing.upright) for thing in calibration.objects}
-    upright |= {sensor.name: np.array(sensor.upright) for sensor in calibration.sensors}
-    trunks = _trunks(capture)
-    out: list[Fact] = []
-    for name, hand in hands.items():
-        out += (Resting(name, *rest) for rest in resting(hand.poses, thresholds))
-    for body in mobile:
-        guide = guides.get(body.name)
-        out += _motion(things[body.name], seen, upright[body.name], thresholds, guide)
-    out += seated(things, hands, touches, seen, thresholds)
-    out += bearing(capture, bodies, touches, calibration, thresholds)
-    borders = boundary_frames([*seen, *out], acting, len(capture.times) - 1)
-    others = (things[body.name] for body in mobile if body.name not in hands)
-    for one in (*hands.values(), *others):
-        frames = tuple(borders.get(one.name, ()))
-        out += places(one, upright[one.name], frames, since)
-        if one.name in trunks:
-            trunk = bodies.sensors[trunks[one.name]]
-            out += trunk_places(one, trunk, upright[trunk.name], frames)
-        out += _openings(one.name, guides, frames)
+    def scene(self) -> Iterator[Fact]:
+        """Who acts, what there is, and what the user states."""
+        capture = self.capture
+        yield Frames(0, len(capture.times) - 1)
+        yield RateMhz(round(1000.0 * capture.rate_hz))
+        for sensor in capture.acting:
+            yield Link(sensor.name, sensor.end_effector, sensor.side)
+        for thing in capture.objects:
+            yield Tag(thing.name, thing.tag.value)
+        if capture.others:
+            own = [thing for thing in capture.objects if thing.tag is TagType.SELF]
+            bodies: tuple[Sensor | TagObject, ...] = (*capture.acting, *seeing(capture), *own)
+            for body in bodies:
+                yield OfAgent(body.name, capture.agent_of(body))
+        if capture.force_transfer:
+            yield ForceTransfer()
+        for rank, end in enumerate(capture.purposes):
+            action, thing_name, goal = (e or ANY for e in (end.action, end.object, end.goal))
+            yield Intended(rank, action, thing_name, goal, end.purpose)
+
+    def contacts(self, touches: Iterable[Contact]) -> Iterator[Fact]:
+        """Contacts; of two mobile objects either may be the dominant one: stated both ways."""
+        movable = set(self.mobile) - set(self.acting)
+        for touch in touches:
+            orders = [(touch.first, touch.second)]
+            if {touch.first, touch.second} <= movable:
+                orders.append((touch.second, touch.first))
+            for first, second in orders:
+                yield Touching(first, second, *touch.interval)
+                yield Gap(first, second, touch.interval[0], round(1e6 * touch.gap_m))
+
+    def motions(self, touches: Iterable[Contact]) -> Iterator[Fact]:
+        """When each object moves, by its floor, and when that truly began and ended."""
+        for name in self.mobile:
+            poses, rests, floor = (
+                self.bodies.objects[name].poses,
+                self.rests(name),
+                self.floor(name),
+            )
+            for interval in moving(poses, rests, floor, self.limits):
+                yield Moving(name, *interval)
+                partners = self._touched(name, interval, touches)
+                edges = motion_edges(poses, interval, rests, floor, self.limits, partners)
+                yield Displaced(name, *edges)
+
+    def _touched(self, name: str, motion: Interval, touches: Iterable[Contact]) -> list[Poses]:
+        """Poses of what an object touches as it moves and what is not fixed."""
+        others = {
+            touch.second if touch.first == name else touch.first
+            for touch in touches
+            if name in (touch.first, touch.second)
+            and touch.interval[0] <= motion[1]
+            and motion[0] <= touch.interval[1]
+        }
+        own = self.bodies.objects[name].poses
+        found = (self.bodies.named(other).poses for other in sorted(others))
+        return [poses for poses in found if not poses.rests and poses is not own]
+
+    def guides(self) -> dict[str, Guide]:
+        """The hinge or rail of each mobile object that moves on one throughout."""
+        objects = self.bodies.objects
+        fixed = [objects[e.name] for e in self.capture.objects if e.tag is TagType.FIXED]
+        found = {
+            name: guide_of(objects[name], fixed, self.floor(name), self.limits)
+            for name in self.mobile
+        }
+        return {name: guide for name, guide in found.items() if guide is not None}
+
+    def handling(self, known: Sequence[Fact], guides: Mapping[str, Guide]) -> Iterator[Fact]:
+        """Rest, turning points, leaning, falls, arrangements and places of handled bodies.
+
+        Handled are the acting end-effectors and every mobile object that one of them touches.
+        """
+        limits, things = self.limits, self.bodies.objects
+        touches = [fact for fact in known if isinstance(fact, Touching)]
+        held = {touch.other for touch in touches if touch.body in self.acting}
+        mobile = [name for name in self.mobile if name in held]
+        out: list[Fact] = []
+        for name, hand in self.acting.items():
+            out += (Resting(name, *rest) for rest in resting(hand.poses, limits))
+        for name in mobile:
+            out += self._course(things[name], known, guides.get(name))
+        out += seated(things, self.acting, touches, known, limits)
+        out += bearing(self.capture, self.bodies, touches, self.calibration, limits)
+        last = len(self.capture.times) - 1
+        borders = boundary_frames([*known, *out], self.acting, last)
+        others = (things[name] for name in mobile if name not in self.acting)
+        for one in (*self.acting.values(), *others):
+            out += self._placed(one, tuple(borders.get(one.name, ())), touches, guides)
+        for touch in touches:
+            if touch.body in self.acting and touch.other in mobile and touch.body != touch.other:
+                hand, thing = self.acting[touch.body], things[touch.other]
+                for span in shifts(hand, thing, (touch.first, touch.last), limits):
+                    out.append(Lies(touch.body, SHIFTS, touch.other, *span))
+                speed_mm = round(1000.0 * release_speed(thing, touch.last))
+                out.append(ReleaseSpeed(touch.body, touch.other, touch.first, speed_mm))
+        kinds = {thing.name: thing.kind for thing in self.capture.objects}
+        yield from out
+        yield from rooms(things, kinds, touches, tuple(out), limits)
+        yield from self._contact_details(touches)
+        yield from self._loads(known)
+
+    def _course(
+        self, one: BodyGeometry, known: Sequence[Fact], guide: Guide | None
+    ) -> Iterator[Fact]:
+        """Phases, turning points, swings, leaning, falls and rolling of a handled object."""
+        name, limits = one.name, self.limits
+        moves, displaced = (
+            tuple((f.first, f.last) for f in known if isinstance(f, kind) and f.object == name)
+            for kind in (Moving, Displaced)
+        )
+        found = phases(one, displaced, limits)
+        yield from (Phase(name, phase.kind, phase.first, phase.last) for phase in found)
+        if guide is None:
+            met = [fact.first for fact in known if isinstance(fact, Touching) and fact.body == name]
+            turns = turns_of_height(found, one.middles, met, limits)
+        else:
+            turns = turns_on_guide(guide, displaced, limits)
+            yield Guided(name, guide.fit.kind, guide.base)
+        swinging = swings(one.poses, moves, limits)
+        length_m = float(one.shape.size.max()) if one.shape else 0.0
+        leans = leaning(one.poses, self.upright(name), limits, length_m=length_m)
+        yield from (Reverses(name, frame) for frame in turns)
+        yield from (DrawsBack(name, f) for f in level_turns(one.middles, displaced, limits))
+        yield from (Swings(name, *span) for span in swinging)
+        yield from (Lengthwise(name, *span) for span in lengthwise(one, swinging, limits))
+        yield from (Leans(name, *span) for span in leans)
+        yield from (Flies(name, *span) for span in falls(one, limits))
+        yield from (Rolls(name, *span) for span in rolling(one, limits))
+
+    def _placed(
+        self,
+        one: BodyGeometry,
+        frames: tuple[int, ...],
+        touches: list[Touching],
+        guides: Mapping[str, Guide],
+    ) -> Iterator[Fact]:
+        """Where a body is at some frames, and how it is arranged to each object."""
+        things = self.bodies.objects
+        yield from places(one, self.upright(one.name), frames, self.since)
+        trunk = self._trunks.get(one.name)
+        if trunk:
+            upright = self.upright(trunk)
+            yield from trunk_places(one, self.bodies.sensors[trunk], upright, frames)
+        if one.name in guides:
+            opening = guides[one.name].opening
+            for frame in frames:
+                if not np.isnan(opening[frame]):
+                    yield Opening(one.name, frame, round(1000.0 * float(opening[frame])))
         for other in things.values():
             if other.name != one.name:
-                out += distances(one, other, frames, since, whole=whole)
-                out += _arranged(one, other, touches, thresholds)
-        out += _between(one, [other for other in things.values() if other is not one], thresholds)
-    for touch in touches:
-        if touch.body in hands and touch.other in mobiles and touch.body != touch.other:
-            touching = (touch.first, touch.last)
-            spans = shifts(hands[touch.body], things[touch.other], touching, thresholds)
-            out += (Lies(touch.body, SHIFTS, touch.other, *span) for span in spans)
-            left_mps = release_speed(things[touch.other], touch.last)
-            out.append(ReleaseSpeed(touch.body, touch.other, touch.first, round(1000.0 * left_mps)))
-    kinds = {thing.name: thing.kind for thing in capture.objects}
-    out += rooms(things, kinds, touches, tuple(out), thresholds)
-    out += _contacts(capture, bodies, touches, thresholds)
-    out += _loads(capture, things, seen, thresholds)
-    return tuple(out)
+                yield from distances(one, other, frames, self.since, whole=self.whole)
+                yield from self._arranged(one, other, touches)
+        others = sorted(
+            (each for each in things.values() if each is not one), key=attrgetter("name")
+        )
+        for first, second in combinations(others, 2):
+            for span in self.spans(between(one, first, second), one):
+                yield Between(one.name, first.name, second.name, *span)
 
+    def _arranged(
+        self, one: BodyGeometry, other: BodyGeometry, touches: list[Touching]
+    ) -> Iterator[Fact]:
+        pair = Pair(one, other, self.limits)
+        for how, arrangement in ARRANGEMENTS.items():
+            for span in self.spans(arrangement(pair), one):
+                yield Lies(one.name, how, other.name, *span)
+                if how in PASSED and span[0] > 0 and span[1] < len(one.middles) - 1:
+                    ends = sides(one, other, np.array(span))
+                    yield Passage(one.name, how, other.name, span[0], ends)
+        met = [t for t in touches if (t.body, t.other) == (one.name, other.name)]
+        for first, last in self.spans(pair.near, one):
+            if not any(touch.first <= last and touch.last >= first for touch in met):
+                yield Lies(one.name, NEAR, other.name, first, last)
 
-def _trunks(capture: Capture) -> dict[str, str]:
-    """The trunk of the agent whose each end-effector is, where one is tracked."""
-    own: dict[str, list[Sensor]] = defaultdict(list)
-    for sensor in capture.sensors:
-        own[capture.agent_of(sensor)].append(sensor)
-    trunks = {agent: trunk_sensor(sensors) for agent, sensors in own.items()}
-    found = ((sensor.name, trunks[capture.agent_of(sensor)]) for sensor in capture.acting)
-    return {name: trunk.name for name, trunk in found if trunk and trunk.name != name}
+    @cached_property
+    def _trunks(self) -> dict[str, str]:
+        """The trunk of the agent whose each end-effector is, where one is tracked."""
+        capture = self.capture
+        own: dict[str, list[Sensor]] = defaultdict(list)
+        for sensor in capture.sensors:
+            own[capture.agent_of(sensor)].append(sensor)
+        trunks = {agent: trunk_sensor(sensors) for agent, sensors in own.items()}
+        found = ((sensor.name, trunks[capture.agent_of(sensor)]) for sensor in capture.acting)
+        return {name: trunk.name for name, trunk in found if trunk and trunk.name != name}
 
+    def _loads(self, known: Sequence[Fact]) -> Iterator[Fact]:
+        """What mobile objects bear in or on them and take along."""
+        things, moves = self.bodies.objects, _motions(known)
+        for touch in known:
+            if isinstance(touch, Touching) and {touch.body, touch.other} <= set(self.mobile):
+                load, bearer, span = things[touch.body], things[touch.other], touch.ends()
+                if rides(load, bearer, (span[0], span[1]), moves[touch.other], self.limits):
+                    yield Rides(touch.body, touch.other, touch.first)
 
-def _motion(
-    one: BodyGeometry,
-    known: list[Fact],
-    upright: Vector,
-    thresholds: Thresholds,
-    guide: Guide | None,
-) -> Iterator[Fact]:
-    pose = one.poses
-    moves = tuple(
-        (fact.first, fact.last)
-        for fact in known
-        if isinstance(fact, Moving) and fact.object == one.name
-    )
-    motions = tuple(
-        (fact.first, fact.last)
-        for fact in known
-        if isinstance(fact, Displaced) and fact.object == one.name
-    )
-    found = phases(one, motions, thresholds)
-    yield from (Phase(one.name, phase.kind, phase.first, phase.last) for phase in found)
-    if guide is None:
-        met = [fact.first for fact in known if isinstance(fact, Touching) and fact.body == one.name]
-        turns = turns_of_height(found, one.middles, met, thresholds)
-    else:
-        turns = turns_on_guide(guide, motions, thresholds)
-        yield Guided(one.name, guide.fit.kind, guide.base)
-    yield from (Reverses(one.name, frame) for frame in turns)
-    back = level_turns(one.middles, motions, thresholds)
-    yield from (DrawsBack(one.name, frame) for frame in back)
-    swinging = swings(pose, moves, thresholds)
-    yield from (Swings(one.name, *span) for span in swinging)
-    yield from (Lengthwise(one.name, *span) for span in lengthwise(one, swinging, thresholds))
-    length_m = float(one.shape.size.max()) if one.shape else 0.0
-    leans = leaning(pose, upright, thresholds, length_m=length_m)
-    yield from (Leans(one.name, *span) for span in leans)
-    yield from (Flies(one.name, *span) for span in falls(one, thresholds))
-    yield from (Rolls(one.name, *span) for span in rolling(one, thresholds))
+    def _contact_details(self, touches: list[Touching]) -> Iterator[Fact]:
+        """From where bodies touch, and how fast they met."""
+        upward: dict[tuple[str, str, int], int] = {}
+        for touch in touches:
+            names, frame = (touch.body, touch.other), touch.first
+            other = self.bodies.objects[touch.other]
+            if touch.body in self.acting:
+                body = touching_part(self.bodies, touch.body, other, frame)
+            else:
+                body = self.bodies.objects[touch.body]
+            swapped = upward.get((touch.other, touch.body, frame))
+            if swapped is not None:
+                yield ContactNormal(*names, frame, -swapped)
+            elif (normal := contact_normal(body, other, frame, self.limits)) is not None:
+                upward[*names, frame] = round(1000.0 * float(normal[2]))
+                yield ContactNormal(*names, frame, upward[*names, frame])
+                if touch.body in self.acting:
+                    yield from self._sides(touch, normal)
+            speed_mm = round(1000.0 * closing_speed(body, other, frame))
+            yield ClosingSpeed(*names, frame, speed_mm)
 
+    def _sides(self, touch: Touching, normal: Vector) -> Iterator[Fact]:
+        """On which side an end-effector touches what can be moved, and what looks somewhere."""
+        names, first = (touch.body, touch.other), touch.first
+        if touch.other in self.mobile:
+            x, y = (round(-1000.0 * float(part)) for part in normal[:2])
+            yield PressDirection(*names, first, x, y)
+        for head in seeing(self.capture):
+            if head.name == touch.other:
+                ahead = sight(head, self.bodies.sensors[touch.other].poses)[1][first]
+                along = float(normal @ ahead)
+                if not np.isnan(along):
+                    yield SightNormal(*names, first, round(1000.0 * along))
 
-def _openings(name: str, guides: Mapping[str, Guide], frames: tuple[int, ...]) -> Iterator[Fact]:
-    """How far a body on a guide is from its closed place at some frames; lost ones are left out."""
-    if name in guides:
-        opening = guides[name].opening
-        for frame in frames:
-            if not np.isnan(opening[frame]):
-                yield Opening(name, frame, round(1000.0 * float(opening[frame])))
-
-
-def _arranged(
-    one: BodyGeometry, other: BodyGeometry, touches: Iterable[Touching], thresholds: Thresholds
-) -> Iterator[Fact]:
-    pair = Pair(one, other, thresholds)
-    for how, arrangement in ARRANGEMENTS.items():
-        for span in _spans(arrangement(pair), one, thresholds):
-            yield Lies(one.name, how, other.name, *span)
-            if how in PASSED and span[0] > 0 and span[1] < len(one.middles) - 1:
-                yield Passage(one.name, how, other.name, span[0], sides(one, other, np.array(span)))
-    touching = [
-        (touch.first, touch.last)
-        for touch in touches
-        if (touch.body, touch.other) == (one.name, other.name)
-    ]
-    for first, last in _spans(pair.near, one, thresholds):
-        if not any(begin <= last and end >= first for begin, end in touching):
-            yield Lies(one.name, NEAR, other.name, first, last)
-
-
-def _between(
-    one: BodyGeometry, others: list[BodyGeometry], thresholds: Thresholds
-) -> Iterator[Fact]:
-    for first, second in combinations(sorted(others, key=lambda body: body.name), 2):
-        for span in _spans(between(one, first, second), one, thresholds):
-            yield Between(one.name, first.name, second.name, *span)
-
-
-def _spans(holds: Holds, one: BodyGeometry, thresholds: Thresholds) -> list[Interval]:
-    return intervals(
-        holds,
-        one.poses.smooth.times,
-        dropout_s=thresholds.dropout_s,
-        minimum_s=thresholds.contact_minimum_s,
-    )
-
-
-def _loads(
-    capture: Capture, things: Mapping[str, BodyGeometry], known: list[Fact], thresholds: Thresholds
-) -> Iterator[Fact]:
-    """What mobile objects bear in or on them and take along."""
-    mobile = {body.name for body in capture.objects if body.tag is TagType.MOBILE}
-    motions: dict[str, list[Interval]] = defaultdict(list)
-    for fact in known:
-        if isinstance(fact, Moving):
-            motions[fact.object].append((fact.first, fact.last))
-    for fact in known:
-        if isinstance(fact, Touching) and {fact.body, fact.other} <= mobile:
-            load, bearer = things[fact.body], things[fact.other]
-            span = fact.first, fact.last
-            if rides(load, bearer, span, motions[fact.other], thresholds):
-                yield Rides(fact.body, fact.other, fact.first)
-
-
-def _sides(touch: Touching, normal: Vector, capture: Capture, bodies: Bodies) -> Iterator[Fact]:
-    """On which side an end-effector touches what can be moved, and what looks somewhere."""
-    body, other, first = touch.body, touch.other, touch.first
-    if any(body.name == other and body.tag is TagType.MOBILE for body in capture.objects):
-        x, y = (round(-1000.0 * float(part)) for part in normal[:2])
-        yield PressDirection(body, other, first, x, y)
-    for head in seeing(capture):
-        if head.name == other:
-            along = float(normal @ sight(head, bodies.sensors[other].poses)[1][first])
-            if not np.isnan(along):
-                yield SightNormal(body, other, first, round(1000.0 * along))
-
-
-def _contacts(
-    capture: Capture, bodies: Bodies, touches: Iterable[Touching], thresholds: Thresholds
-) -> Iterator[Fact]:
-    upward: dict[tuple[str, str, int], int] = {}
-    acting = {sensor.name for sensor in capture.acting}
-    for touch in touches:
-        other = bodies.objects[touch.other]
-        if touch.body in acting:
-            body = touching_part(bodies, touch.body, other, touch.first)
-        else:
-            body = bodies.objects[touch.body]
-        swapped = upward.get((touch.other, touch.body, touch.first))
-        if swapped is not None:
-            yield ContactNormal(touch.body, touch.other, touch.first, -swapped)
-        elif (normal := contact_normal(body, other, touch.first, thresholds)) is not None:
-            permille = upward[touch.body, touch.other, touch.first] = round(
-                1000.0 * float(normal[2])
-            )
-            yield ContactNormal(touch.body, touch.other, touch.first, permille)
-            if touch.body in acting:
-                yield from _sides(touch, normal, capture, bodies)
-        speed = closing_speed(body, other, touch.first)
-        yield ClosingSpeed(touch.body, touch.other, touch.first, round(1000.0 * speed))
+    def arriving(self) -> Iterator[tuple[str, "Arriving"]]:
+        """The mobile objects that have come to rest so recently that its place is not known yet."""
+        for name in self.mobile:
+            rests = self.rests(name)
+            if rests and rests[-1].missing:
+                yield name, Arriving(rests[-1].interval[0], rests[-1].missing)
 
 
 LOSS = "long-gap"
@@ -445,9 +503,6 @@ def _loss(
 LONG_S = 600.0
 """A recording of this length [s] or more takes so long to measure that to make the offset surfaces
 of its bodies once more, some seconds, hardly counts."""
-
-ANY = "any"
-"""What an empty field of a purpose is in a fact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -553,43 +608,26 @@ def measured(
     that stay small in it are left out.
     """
     limits = thresholds_of(calibration)
+    trial = _Trial(capture, bodies, calibration, limits, since, whole)
     tracks = {
-        sensor.name: _track(
-            bodies.sensors[sensor.name].poses,
-            calibration.sensor(sensor.name).highest_speed_mps,
-            limits,
-        )
-        for sensor in capture.acting
+        name: _track(body.poses, calibration.sensor(name).highest_speed_mps, limits)
+        for name, body in trial.acting.items()
     }
     looks = {sensor.name: attention(capture, sensor, bodies, limits) for sensor in seeing(capture)}
     near = contacts(capture, bodies, calibration, limits, answers)
-    moves = tuple(_moving(capture, bodies, calibration, near, limits))
+    moves = list(trial.motions(near))
     touches = tuple(arrivals(capture, bodies, calibration, near, moves, limits))
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
     _forget(capture, bodies)
-    facts = [
-        *_scene(capture),
-        *(
-            ZeroCrossing(sensor.name, int(frame))
-            for sensor in capture.acting
-            for frame in tracks[sensor.name].crossings
-        ),
-        *(
-            Pause(sensor.name, int(frame))
-            for sensor in capture.acting
-            for frame in tracks[sensor.name].pauses
-        ),
-        *_touching(capture, touches),
-        *moves,
-        *(
-            LookingAt(sensor, name, *interval)
-            for sensor, look in looks.items()
-            for name, interval in look.looks
-        ),
-    ]
+    facts = [*trial.scene(), *trial.contacts(touches), *moves]
+    for name, track in tracks.items():
+        facts += (ZeroCrossing(name, int(frame)) for frame in track.crossings)
+        facts += (Pause(name, int(frame)) for frame in track.pauses)
+    for sensor, look in looks.items():
+        facts += (LookingAt(sensor, name, *interval) for name, interval in look.looks)
     facts += company(capture, bodies, calibration, limits)
-    guides = dict(_guides(capture, bodies, calibration, limits))
-    facts += handling(capture, bodies, facts, calibration, limits, guides, since, whole=whole)
+    guides = trial.guides()
+    facts += list(trial.handling(tuple(facts), guides))
     own = [notice for notice in capture.notices if notice.code != LOSS]
     if notices:
         own += notices_of(capture, calibration, limits)
@@ -603,7 +641,7 @@ def measured(
         bodies.without_caches(),
         guides,
         {(each.first, each.second): each.interval[1] for each in near if each.lingers},
-        dict(_arriving(capture, bodies, calibration, limits)),
+        dict(trial.arriving()),
     )
 
 
@@ -636,104 +674,7 @@ def _track(poses: Poses, highest_mps: float, thresholds: Thresholds) -> Track:
     return Track(poses, crossings, pauses(pace, crossings, reach))
 
 
-def _scene(capture: Capture) -> Iterator[Fact]:
-    yield Frames(0, len(capture.times) - 1)
-    yield RateMhz(round(1000.0 * capture.rate_hz))
-    for sensor in capture.acting:
-        yield Link(sensor.name, sensor.end_effector, sensor.side)
-    for thing in capture.objects:
-        yield Tag(thing.name, thing.tag.value)
-    if capture.others:
-        own = [thing for thing in capture.objects if thing.tag is TagType.SELF]
-        bodies: tuple[Sensor | TagObject, ...] = (*capture.acting, *seeing(capture), *own)
-        for body in bodies:
-            yield OfAgent(body.name, capture.agent_of(body))
-    if capture.force_transfer:
-        yield ForceTransfer()
-    for rank, purpose in enumerate(capture.purposes):
-        yield Intended(
-            rank, purpose.action or ANY, purpose.object or ANY, purpose.goal or ANY, purpose.purpose
-        )
-
-
-def _guides(
-    capture: Capture, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
-) -> Iterator[tuple[str, Guide]]:
-    """The hinge or rail of each mobile object that moves on one throughout."""
-    fixed = [bodies.objects[body.name] for body in capture.objects if body.tag is TagType.FIXED]
-    for thing in capture.objects:
-        if thing.tag is TagType.MOBILE:
-            known = calibration.tag_object(thing.name)
-            floor = Floor(known.motion_floor_m, known.motion_floor_rad)
-            guide = guide_of(bodies.objects[thing.name], fixed, floor, thresholds)
-            if guide is not None:
-                yield thing.name, guide
-
-
-def _touching(capture: Capture, touches: tuple[Contact, ...]) -> Iterator[Fact]:
-    """Each contact; of two mobile objects either may be the dominant one: stated both ways."""
-    mobile = {thing.name for thing in capture.objects if thing.tag is TagType.MOBILE}
-    acting = {sensor.name for sensor in capture.acting}
-    for touch in touches:
-        orders = [(touch.first, touch.second)]
-        if touch.first in mobile - acting and touch.second in mobile - acting:
-            orders.append((touch.second, touch.first))
-        for first, second in orders:
-            yield Touching(first, second, *touch.interval)
-            yield Gap(first, second, touch.interval[0], round(1e6 * touch.gap_m))
-
-
-def _moving(
-    capture: Capture,
-    bodies: Bodies,
-    calibration: Calibration,
-    touches: Iterable[Contact],
-    thresholds: Thresholds,
-) -> Iterator[Fact]:
-    """When each object moves, by its floor, and when that truly began and ended."""
-    for thing in capture.objects:
-        if thing.tag is TagType.MOBILE:
-            pose = bodies.objects[thing.name].poses
-            known = calibration.tag_object(thing.name)
-            floor = Floor(known.motion_floor_m, known.motion_floor_rad)
-            rests = rest_poses(pose, floor, thresholds)
-            for interval in moving(pose, rests, floor, thresholds):
-                yield Moving(thing.name, *interval)
-                partners = _touched(thing.name, interval, touches, bodies)
-                edges = motion_edges(pose, interval, rests, floor, thresholds, partners)
-                yield Displaced(thing.name, *edges)
-
-
-def _arriving(
-    capture: Capture, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
-) -> Iterator[tuple[str, Arriving]]:
-    """The mobile objects that have come to rest so recently that its place is not told yet."""
-    for thing in capture.objects:
-        if thing.tag is TagType.MOBILE:
-            known = calibration.tag_object(thing.name)
-            floor = Floor(known.motion_floor_m, known.motion_floor_rad)
-            rests = rest_poses(bodies.objects[thing.name].poses, floor, thresholds)
-            if rests and rests[-1].missing:
-                yield thing.name, Arriving(rests[-1].interval[0], rests[-1].missing)
-
-
-def _touched(
-    name: str, motion: Interval, touches: Iterable[Contact], bodies: Bodies
-) -> list[Poses]:
-    """Poses of what an object touches as it moves and what is not fixed."""
-    others = {
-        touch.second if touch.first == name else touch.first
-        for touch in touches
-        if name in (touch.first, touch.second)
-        and touch.interval[0] <= motion[1]
-        and motion[0] <= touch.interval[1]
-    }
-    own = bodies.objects[name].poses
-    found = (bodies.named(other).poses for other in sorted(others))
-    return [poses for poses in found if not poses.rests and poses is not own]
-
-
-def _motions(moves: tuple[Fact, ...]) -> dict[str, list[Interval]]:
+def _motions(moves: Iterable[Fact]) -> dict[str, list[Interval]]:
     """When each object moves, by its name."""
     found: dict[str, list[Interval]] = defaultdict(list)
     for fact in moves:
