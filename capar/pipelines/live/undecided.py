@@ -1,6 +1,6 @@
 """From which frame on later frames may yet decide what an end-effector does."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
@@ -44,8 +44,8 @@ class Handling:
     """Frames for which a motion that has just begun may yet turn out to be none."""
 
     lingering: Mapping[tuple[str, str], int] = field(default_factory=dict)
-    """Bodies that may be said to have touched on, as they are near each other, or one is out of
-    sight, and the last frame in which they were seen to touch."""
+    """Bodies whose contact may have gone on, as they are near each other, or one is out of sight,
+    and the last frame in which they were seen to touch."""
 
     leans: Sequence[Leans] = ()
     """When things lean far over."""
@@ -74,121 +74,79 @@ class Handling:
         """Frames so much earlier that no event of those at them is before."""
         return {ee: frame - self.margin for ee, frame in since.items()}
 
+    def going(self) -> list[Touching]:
+        """The contacts with objects that can be moved that go on."""
+        since = self.last - self.margin
+        return [t for t in self.touching if t.other in self.mobile and t.last >= since]
+
+    def moves(self, own: Touching) -> list[Moving]:
+        """The motions of an object since it was touched."""
+        return [m for m in self.moving if m.object == own.other and m.last >= own.first]
+
+    def may_be_blow(self, own: Touching) -> bool:
+        """Whether an object was met fast and has not moved: to be taken is no blow."""
+        fast = (own.body, own.other, own.first) in self.fast
+        return fast and not self.moves(own) and self.last - own.first <= self.longest
+
+    def besides(self, own: Touching) -> list[Touching]:
+        """What is touched beside an object that has not moved yet, for some time.
+
+        Once it moves, the hand has possessed it from the first, and its other contacts do not
+        count.
+        """
+        if self.moves(own):
+            return []
+        return [
+            touch
+            for touch in self.touching
+            if touch.body == own.body
+            and touch.other != own.other
+            and touch.last >= own.first
+            and self.last - max(own.first, touch.first) <= self.longest
+        ]
+
 
 def undecided(handling: Handling) -> dict[str, int]:
     """The first frame of each end-effector about which something is still open."""
-    out: dict[str, int] = {}
-    for own in _going(handling):
-        besides = _besides(handling, own)
-        if besides or _is_shared(handling, own) or _may_be_blow(handling, own):
-            first = min(
-                own.first, *(touch.first for touch in besides), out.get(own.body, own.first)
-            )
-            out[own.body] = first
-    later = (
-        *out_of_sight(handling).items(),
-        *_swinging(handling),
-        *_lingering(handling),
-        *_just_taken(handling),
-        *_just_set_off(handling),
-        *_arriving(handling),
+    pairs = []
+    for own in handling.going():
+        besides = handling.besides(own)
+        if besides or _is_shared(handling, own) or handling.may_be_blow(own):
+            pairs += [(own.body, min(own.first, *(touch.first for touch in (own, *besides))))]
+    return _earliest(
+        (
+            *pairs,
+            *out_of_sight(handling).items(),
+            *_swinging(handling),
+            *_lingering(handling),
+            *_just_moving(handling),
+            *_arriving(handling, handling.arriving),
+        )
     )
-    for body, since in later:
-        out[body] = min(since, out.get(body, since))
-    return out
 
 
 def awaited(handling: Handling) -> dict[str, int]:
-    """The things whose first motion decides, and the frame at which each is touched first."""
-    out: dict[str, int] = {}
-    for own in _going(handling):
-        if _besides(handling, own) or _may_be_blow(handling, own):
-            out[own.other] = min(own.first, out.get(own.other, own.first))
-    return out
+    """The objects whose first motion decides, and the frame at which each is touched first."""
+    return _earliest(
+        (own.other, own.first)
+        for own in handling.going()
+        if handling.besides(own) or handling.may_be_blow(own)
+    )
 
 
 def nameless(handling: Handling) -> dict[str, int]:
     """The first frame of each end-effector about which too much is open to announce anything."""
-    out = out_of_sight(handling)
-    for own in _going(handling):
-        if _may_be_blow(handling, own):
-            out[own.body] = min(own.first, out.get(own.body, own.first))
-    later = (
-        *_lingering(handling),
-        *_just_taken(handling),
-        *_just_set_off(handling),
-        *_arriving(handling, lambda thing: _may_part(handling, thing)),
-        *_just_tipped(handling),
+    parting = [name for name in handling.arriving if _may_part(handling, name)]
+    return _earliest(
+        (
+            *out_of_sight(handling).items(),
+            *((o.body, o.first) for o in handling.going() if handling.may_be_blow(o)),
+            *_lingering(handling),
+            *_just_moving(handling),
+            *_arriving(handling, parting),
+            *_just_tipped(handling),
+        )
     )
-    for body, since in later:
-        out[body] = min(since, out.get(body, since))
-    return out
-
-
-def out_of_sight(handling: Handling) -> dict[str, int]:
-    """End-effectors in contact with what was lost since, and the frame in which it was last seen.
-
-    If they touch when it is seen again, they have touched all the time.
-    """
-    out: dict[str, int] = {}
-    for touch in handling.touching:
-        for body in (touch.body, touch.other):
-            since = handling.lost.get(body, -1)
-            if touch.last >= since >= max(touch.first, handling.last - handling.longest):
-                out[touch.body] = min(since, out.get(touch.body, since))
-    return out
-
-
-def _going(handling: Handling) -> list[Touching]:
-    """The contacts with things that can be moved that go on."""
-    return [
-        touch
-        for touch in handling.touching
-        if touch.other in handling.mobile and touch.last >= handling.last - handling.margin
-    ]
-
-
-def _is_shared(handling: Handling, own: Touching) -> bool:
-    """Whether somebody else has held the thing before, from whom it may be taken.
-
-    Who takes it over is known once one of the two lets go of it, or is taken not to. What lies on
-    something fixed as it is touched is not taken over, nor is what the same limb has already.
-    """
-    if handling.last - own.first > handling.longest or _is_laid(handling, own):
-        return False
-    before = [
-        touch.body
-        for touch in _going(handling)
-        if touch.other == own.other
-        and touch.body != own.body
-        and touch.first < own.first - handling.margin
-    ]
-    limb = handling.limbs.get(own.body)
-    by_the_same = any(limb is not None and handling.limbs.get(body) == limb for body in before)
-    return bool(before) and not by_the_same
-
-
-def _may_be_blow(handling: Handling, own: Touching) -> bool:
-    """Whether a thing was met fast, is touched still, and has not moved: to be taken is no blow."""
-    return (
-        (own.body, own.other, own.first) in handling.fast
-        and not _has_moved(handling, own)
-        and handling.last - own.first <= handling.longest
-    )
-
-
-def _has_moved(handling: Handling, own: Touching) -> bool:
-    """Whether a thing has moved since it was touched."""
-    return any(move.object == own.other and move.last >= own.first for move in handling.moving)
-
-
-def _swinging(handling: Handling) -> Iterator[tuple[str, int]]:
-    """End-effectors that touch what may move to and fro on, and since when that is open."""
-    for swing in handling.swings:
-        if swing.last >= handling.last - handling.stroke:
-            for touch in handling.touching:
-                if swing.body in (touch.body, touch.other) and touch.last >= swing.last:
-                    yield touch.body, swing.last
 
 
 def decided_at(handling: Handling) -> Iterator[int]:
@@ -201,40 +159,89 @@ def decided_at(handling: Handling) -> Iterator[int]:
         yield handling.last + rest.missing
 
 
-def _just_taken(handling: Handling) -> Iterator[tuple[str, int]]:
-    """End-effectors that touch what has just begun to move, and since when they touch it.
+def out_of_sight(handling: Handling) -> dict[str, int]:
+    """End-effectors in contact with what was lost since, and the frame in which it was last seen.
 
-    Throughout a contact in which a thing moves it is possessed, so that it matters what it touched.
+    If they touch when it is seen again, they have touched all the time.
     """
-    for own in _going(handling):
-        moves = [
-            move.first
-            for move in handling.moving
-            if move.object == own.other and move.last >= own.first
-        ]
-        if moves and min(moves) > handling.last - handling.fresh:
+    return _earliest(
+        (touch.body, since)
+        for touch in handling.touching
+        for since in (handling.lost.get(touch.body, -1), handling.lost.get(touch.other, -1))
+        if touch.last >= since >= max(touch.first, handling.last - handling.longest)
+    )
+
+
+def _earliest(pairs: Iterable[tuple[str, int]]) -> dict[str, int]:
+    """The least frame of each name."""
+    out: dict[str, int] = {}
+    for name, frame in pairs:
+        out[name] = min(frame, out.get(name, frame))
+    return out
+
+
+def _is_shared(handling: Handling, own: Touching) -> bool:
+    """Whether somebody else has held the object before, from whom it may be taken.
+
+    Who takes it over is known once one of the two lets go of it, or is taken not to. What lies on
+    something fixed for some time before and after it is touched is not taken over, nor is what the
+    same limb has already.
+    """
+    margin = handling.margin
+    laid = any(
+        own.other in (touch.body, touch.other)
+        and touch.first <= own.first - margin
+        and own.first + margin <= touch.last
+        for touch in handling.laid
+    )
+    if laid or handling.last - own.first > handling.longest:
+        return False
+    before = [
+        touch.body
+        for touch in handling.going()
+        if touch.other == own.other and touch.body != own.body and touch.first < own.first - margin
+    ]
+    limb = handling.limbs.get(own.body)
+    by_the_same = any(limb is not None and handling.limbs.get(body) == limb for body in before)
+    return bool(before) and not by_the_same
+
+
+def _swinging(handling: Handling) -> Iterator[tuple[str, int]]:
+    """End-effectors that touch what may move to and fro on, and since when that is open."""
+    for swing in handling.swings:
+        if swing.last >= handling.last - handling.stroke:
+            for touch in handling.touching:
+                if swing.body in (touch.body, touch.other) and touch.last >= swing.last:
+                    yield touch.body, swing.last
+
+
+def _just_moving(handling: Handling) -> Iterator[tuple[str, int]]:
+    """End-effectors that touch what has just begun to move, and since when that matters.
+
+    Throughout a contact in which an object moves it is possessed, so that from its beginning it
+    matters what it touched. Where the motion turns out to be none, nothing began when it set off.
+    """
+    recent = handling.last - handling.fresh
+    for own in handling.going():
+        moves = handling.moves(own)
+        if moves and min(move.first for move in moves) > recent:
             yield own.body, own.first
-
-
-def _just_set_off(handling: Handling) -> Iterator[tuple[str, int]]:
-    """End-effectors that touch what has just begun to move, and since when it has set off.
-
-    Where the motion turns out to be none, nothing began there.
-    """
-    for own in _going(handling):
         for move in handling.moving:
-            if move.object == own.other and move.first > handling.last - handling.fresh:
-                yield own.body, _set_off(handling, move)
+            if move.object == own.other and move.first > recent:
+                offs = (
+                    path.first
+                    for path in handling.displaced
+                    if path.object == move.object and path.first <= move.first <= path.last
+                )
+                yield own.body, max(offs, default=move.first)
 
 
-def _arriving(
-    handling: Handling, counts: Callable[[str], bool] = lambda _: True
-) -> Iterator[tuple[str, int]]:
+def _arriving(handling: Handling, names: Iterable[str]) -> Iterator[tuple[str, int]]:
     """End-effectors that touch what has just come to rest, and since when that is open."""
-    for thing in filter(counts, handling.arriving):
-        first = handling.arriving[thing].first
+    for name in names:
+        first = handling.arriving[name].first
         for touch in handling.touching:
-            if touch.other == thing and touch.last >= first - handling.margin:
+            if touch.other == name and touch.last >= first - handling.margin:
                 yield touch.body, first
 
 
@@ -246,35 +253,22 @@ def _just_tipped(handling: Handling) -> Iterator[tuple[str, int]]:
     for lean in handling.leans:
         goes_on = lean.last >= handling.last - handling.margin
         if goes_on and handling.last - lean.first <= handling.longest:
-            yield from (
-                (own.body, lean.first) for own in _going(handling) if own.other == lean.object
-            )
+            for own in handling.going():
+                if own.other == lean.object:
+                    yield own.body, lean.first
 
 
-def _may_part(handling: Handling, thing: str) -> bool:
+def _may_part(handling: Handling, name: str) -> bool:
     """Whether it is open if a contact began or ended at once with a stop, or well before.
 
-    When a thing stopped is known to two thirds of the time within which events are one.
+    When an object stopped is known to two thirds of the time within which events are one.
     """
-    stop = handling.arriving[thing].first
-    unsure = 2 * handling.margin // 3
+    stop = handling.arriving[name].first
     return any(
-        abs(stop - frame - handling.margin) <= unsure
+        abs(stop - frame - handling.margin) <= 2 * handling.margin // 3
         for touch in (*handling.touching, *handling.laid)
-        if thing in (touch.body, touch.other)
+        if name in (touch.body, touch.other)
         for frame in (touch.first, touch.last)
-    )
-
-
-def _set_off(handling: Handling, move: Moving) -> int:
-    """When what is seen to move truly set off."""
-    return max(
-        (
-            way.first
-            for way in handling.displaced
-            if way.object == move.object and way.first <= move.first <= way.last
-        ),
-        default=move.first,
     )
 
 
@@ -286,31 +280,3 @@ def _lingering(handling: Handling) -> Iterator[tuple[str, int]]:
         for touch in handling.touching:
             if touch.other in pair and touch.first <= since <= touch.last:
                 yield touch.body, since
-
-
-def _is_laid(handling: Handling, own: Touching) -> bool:
-    """Whether a thing lies on something fixed for some time before and after it is touched."""
-    return any(
-        own.other in (touch.body, touch.other)
-        and touch.first <= own.first - handling.margin
-        and own.first + handling.margin <= touch.last
-        for touch in handling.laid
-    )
-
-
-def _besides(handling: Handling, own: Touching) -> list[Touching]:
-    """What is touched beside a thing that has not moved yet.
-
-    Once it moves, the hand has possessed it from the first, and its other contacts do not count;
-    for some time it is awaited that it does.
-    """
-    if _has_moved(handling, own):
-        return []
-    return [
-        touch
-        for touch in handling.touching
-        if touch.body == own.body
-        and touch.other != own.other
-        and touch.last >= own.first
-        and handling.last - max(own.first, touch.first) <= handling.longest
-    ]
