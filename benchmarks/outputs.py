@@ -137,7 +137,11 @@ def observe(place: str) -> Any:
     movers = ("moved_by", "moves_with", "unmoved", "moving", "touching")
     return {
         "segments": [
-            [link["ee"], *(each[key] for key in SEGMENT), " ".join(each["features"].values())]
+            [
+                link["ee"],
+                *(each[key] for key in SEGMENT),
+                " ".join(each["features"].values()).strip(),
+            ]
             for link in seen["links"]
             for each in link["segments"]
         ],
@@ -271,6 +275,8 @@ def parse(_: str) -> Any:
         code, out, err = run("parse", text, "--json")
         read = out.strip().startswith(("{", "["))
         found[text] = json.loads(out) if read else [code, first_line(err)]
+        if read and isinstance(found[text], dict) and "sparql" in found[text]:
+            found[text]["sparql"] = re.sub(r"^#.*\n", "", found[text]["sparql"], flags=re.MULTILINE)
     return found
 
 
