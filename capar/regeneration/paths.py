@@ -114,7 +114,9 @@ class Carrying:
         detour: Detour,
         others: Mapping[str, RigidTransform],
     ) -> RigidTransform:
-        path = mapped(part, *ends, turn=turn, detour=detour, kind=self.kind)
+        path = mapped(
+            part, *ends, turn=turn, detour=detour, heading=self.scene.heading, kind=self.kind
+        )
         return self._out_of_ground(name, path, others)
 
     def _out_of_ground(
@@ -270,6 +272,7 @@ def _lifted(name: str, at_s: float, detour: Detour) -> str:
 
 
 HAND_LIFTS_M = (0.0, 0.04, 0.08, 0.12, 0.18, 0.25, 0.35)
+BACKS_M = (0.0, 0.05, 0.1, 0.15, 0.2, 0.3)
 OFFS_M = (0.0, 0.003, 0.02, 0.05)
 """Detours that are tried [m]."""
 
@@ -356,7 +359,16 @@ def hand_paths(
                 ends: tuple[RigidTransform, RigidTransform] = (start, goal),
                 away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = away,
             ) -> RigidTransform:
-                return mapped(part, *ends, turn=turn, detour=detour, away=away, kind=style.kind)
+                facing = scene.heading
+                return mapped(
+                    part,
+                    *ends,
+                    turn=turn,
+                    detour=detour,
+                    heading=facing,
+                    away=away,
+                    kind=style.kind,
+                )
 
             held = before is not None, after is not None
             apart = after.thing if after and _moved_at_once(source, after) else ""
@@ -395,7 +407,8 @@ def _away(hand: RigidTransform, hold: Hold | None) -> Float[np.ndarray, "3"]:
 
 
 DETOURS = sorted(
-    (Detour(lift, off) for lift in HAND_LIFTS_M for off in OFFS_M), key=lambda each: each.size
+    (Detour(lift, back, off) for lift in HAND_LIFTS_M for back in BACKS_M for off in OFFS_M),
+    key=lambda each: each.size,
 )
 
 

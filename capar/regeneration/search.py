@@ -10,7 +10,7 @@ grips   the recorded one, turned: smallest turns first    a table or crate of an
         drawn back along the fingers                      a forearm inside a large object
         turned as the body itself takes the object        palms of recorded living hands
 place   the given one, then twelve around it              a wrist at its limit
-paths   the recorded one, lifted, kept off at its ends    a table's edge, the rim of a mug
+paths   the recorded one, lifted, drawn back, kept off    a table's edge, the rim of a mug
 motion  as planned                                        nearly all
         wider margins of free hands                       a mug cut in passing
         hands led more firmly besides                     a hand that arrives late

@@ -233,27 +233,33 @@ class Detour:
     lift_m: float = 0.0
     """How far it is lifted half-way [m]."""
 
+    back_m: float = 0.0
+    """How far it is drawn back, towards the performer, half-way [m]."""
+
     off_m: float = 0.0
     """How far a hand draws off what it leaves, and keeps off what it comes to, at most [m]."""
 
     @property
     def size(self) -> float:
         """How far it leads away from the path [m]."""
-        return self.lift_m + self.off_m
+        return self.lift_m + self.back_m + self.off_m
 
     def offset(
         self,
         shares: Float[np.ndarray, "frames"],
+        heading: float,
         away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = NOWHERE,
     ) -> Float[np.ndarray, "frames 3"]:
         """The added displacement at shares of the path [m].
 
         Args:
             shares: Of the path [1].
+            heading: Which way the performer faces [rad].
             away: Directions off what is left at the start and off what is reached at the goal.
         """
+        back = self.back_m * np.array([-np.cos(heading), -np.sin(heading), 0.0])
         bump = 4.0 * shares * (1.0 - shares)
-        out = np.outer(bump, [0.0, 0.0, self.lift_m])
+        out = np.outer(bump, back + np.array([0.0, 0.0, self.lift_m]))
         left, right = PEAK * shares * (1.0 - shares) ** 3, PEAK * shares**3 * (1.0 - shares)
         return np.asarray(out + self.off_m * (np.outer(left, away[0]) + np.outer(right, away[1])))
 
@@ -280,6 +286,7 @@ def mapped(
     *,
     turn: float = 0.0,
     detour: Detour = STRAIGHT,
+    heading: float = 0.0,
     away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = NOWHERE,
     kind: Kind = Kind.PATH,
 ) -> RigidTransform:
@@ -294,6 +301,7 @@ def mapped(
         goal: Where it ends.
         turn: How far the deviations are turned about z where the path has no direction [rad].
         detour: What is added between the ends.
+        heading: Which way the performer faces [rad].
         away: Directions in which a detour draws off, at the start and at the goal.
         kind: What of the path is kept.
     """
@@ -310,7 +318,7 @@ def mapped(
     elif kind is Kind.FRAME:
         aside = _in_frames(old, start.translation, goal.translation, along, new, aside)
     spots = start.translation + np.outer(along, new) + aside
-    spots = spots + detour.offset(shares, away)
+    spots = spots + detour.offset(shares, heading, away)
     spots = retimed(spots, shares)
     return RigidTransform.from_components(
         spots, _turns(path.rotation, start.rotation, goal.rotation, shares, about)
