@@ -1,8 +1,8 @@
 """The Actionary: observations kept as RDF, and the questions it answers (thesis 4.1.2)."""
 
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from capar.model.errors import UnknownNameError
@@ -43,7 +43,7 @@ class Added:
     statements: int
 
 
-class Actionary(Knowledge):
+class Actionary(Knowledge, AbstractContextManager["Actionary"]):
     """Observations, the actions, agents and objects that they are of, and the ontology."""
 
     def __init__(self, store: Store, *, read_only: bool = False) -> None:
@@ -87,16 +87,7 @@ class Actionary(Knowledge):
         """An Actionary that ends with the process."""
         return cls(open_store(None))
 
-    def __enter__(self) -> Self:
-        """Use it in a ``with`` statement, which closes it."""
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Close it."""
         self.close()
 

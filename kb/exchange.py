@@ -26,7 +26,6 @@ from kb.errors import ShapeError, StoreError
 from kb.lookup.agents import aliases, joined
 from kb.lookup.pars import observations
 from kb.store import names, sparql, updates
-from kb.store import updates as writing
 from kb.store.answers import turtle
 from kb.store.statements import insertion
 from kb.store.stores import Store
@@ -95,7 +94,7 @@ def format_of(path: Path | str, given: str | None = None) -> str:
     if not name:
         *some, last = sorted(FORMATS)
         raise FileError(
-            path, "its name states no format;", f"add --format: {', '.join(some)} or {last}."
+            path, "its name tells no format;", f"add --format: {', '.join(some)} or {last}."
         )
     if name not in FORMATS:
         raise UnknownNameError("format", name, FORMATS)
@@ -251,7 +250,7 @@ def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -
     )
     taken = joined(taken, aliases(store))
     if taken:
-        removals = [writing.removal(NamedNode(each)) for each in seen]
+        removals = [updates.removal(NamedNode(each)) for each in seen]
         store.change(" ;\n".join([*removals, insertion(taken)]))
     return len(taken), len(seen)
 
