@@ -22,7 +22,6 @@ from extractors.readers.bundle.capture_toml import grouped
 
 Act = Callable[..., motions.Trial]
 PEOPLE = pytest.mark.parametrize("performer", motions.PERFORMERS, ids=lambda each: each.name)
-NOBODY_CARRIES = {"Kick", "HandOver", "Give", "Receive", "Hit", "HitAway"}
 
 
 def names_of(seen: Observation) -> dict[str, tuple[str, ...]]:
@@ -41,13 +40,6 @@ def test_the_steps_are_those_that_were_performed(
 ) -> None:
     trial = act(performer, **options)
     assert names_of(observe(trial.capture)) == trial.truth.steps["extended"]
-
-
-@pytest.mark.parametrize("act", WHOLE, ids=lambda each: each.__name__)
-def test_a_floor_is_neither_kicked_nor_handed_over_nor_hit(act: Act) -> None:
-    seen = observe(act(motions.WOMAN).capture)
-    done = {each.name for each in seen.segments if "floor" in each.objects}
-    assert not done & NOBODY_CARRIES
 
 
 @PEOPLE
@@ -125,19 +117,6 @@ def test_fingers_that_touch_move_and_hold_a_thing_are_told_as_the_hand() -> None
     )
 
 
-def test_hands_of_two_people_are_not_grouped() -> None:
-    capture = walk(motions.WOMAN, parts=True).capture
-    guest = replace(capture.agent, name="guest")
-    sensors = [
-        replace(each, agent="guest") if each.name == "right_toe" else each
-        for each in capture.sensors
-    ]
-    both = grouped(replace(capture, sensors=tuple(sensors), others=(guest,)))
-    assert [each.name for each in both.acting if each.side == "right"] == [
-        "right_heel", "right_toe",
-    ]  # fmt: skip
-
-
 def test_a_part_of_nobody_or_of_another_agent_is_refused() -> None:
     capture = walk(motions.WOMAN).capture
     first, second = capture.sensors
@@ -162,14 +141,6 @@ def test_hands_that_have_a_thing_between_them_do_not_clap() -> None:
         "left_hand",
     }
     assert not any(each.name == "Clap" for each in observe(held).segments)
-
-
-def test_surfaces_that_are_stated_to_be_far_off_do_not_show_hands_that_meet() -> None:
-    capture = WHOLE[2](motions.WOMAN).capture
-    loose = replace(capture, contact_tolerance_m=0.02)
-    assert with_meeting_hands(loose) is loose
-    tight = replace(capture, contact_tolerance_m=0.008)
-    assert len(with_meeting_hands(tight).objects) == 2
 
 
 def test_hands_that_never_meet_are_no_objects() -> None:

@@ -33,7 +33,6 @@ from capar.body.inverse_kinematics import (
 )
 from capar.body.performing import RELAXED, perform
 from capar.body.scripts import SIDES, slide
-from capar.body.skeleton import skeleton
 from capar.model.capture import Agent
 from capar.model.errors import UnknownNameError
 
@@ -133,15 +132,6 @@ def test_mujoco_loads_the_model_without_a_warning(
     assert capfd.readouterr() == ("", "")
 
 
-def test_two_bodies_share_a_scene_under_prefixes() -> None:
-    scene = mujoco.MjSpec()
-    for prefix, name in (("tall_", "man"), ("small_", "child")):
-        frame = scene.worldbody.add_frame()
-        scene.attach(body_spec(ready_made(name), prefix=prefix), frame=frame)
-    model = scene.compile()
-    assert model.nbody == 1 + 2 * len(skeleton(ready_made("man")))
-
-
 def test_every_number_names_its_source() -> None:
     tables = table("anthropometry")
     for population in READY:
@@ -155,14 +145,6 @@ def test_the_measures_say_which_were_given() -> None:
     assert measures.given == {"stature", "upper_arm"}
     assert measures["upper_arm"] == 0.29
     assert measures.deviations["upper_arm"] < measures.deviations["forearm"]
-
-
-def test_between_nine_and_eighteen_proportions_pass_from_the_childs_to_the_adults() -> None:
-    heads = [
-        (m := estimate_measures(sex="male", age=age))["head_length"] / m["stature"]
-        for age in (9.0, 12.0, 15.0, 18.0)
-    ]
-    assert heads == sorted(heads, reverse=True)
 
 
 def test_a_capture_states_its_performers_measures() -> None:

@@ -24,7 +24,6 @@ from capar.body.scripts import (
     lift_with_both_hands,
     sip,
     slide,
-    slowed,
     tossed,
     touch,
 )
@@ -151,17 +150,6 @@ def test_a_drink_meets_the_mouth_and_ends_where_it_began() -> None:
     np.testing.assert_allclose(last, acted.scene.thing("mug").place, atol=1e-9)
 
 
-def test_hands_move_with_one_bell_of_speed_to_what_they_reach_for() -> None:
-    acted = _act("man", "touch")
-    start, end = next(each[1:] for each in acted.phases if each[0] == "reach")
-    now = (acted.times >= start) & (acted.times < end)
-    palm, _ = acted.human.sites(acted.motion[now], ["right_palm"])["right_palm"]
-    speed = np.linalg.norm(np.diff(palm, axis=0), axis=1) * RATE_HZ
-    peak = int(speed.argmax())
-    assert 0.25 < peak / len(speed) < 0.75
-    assert speed[0] < 0.2 * speed.max() > speed[-1]
-
-
 def test_a_bundle_reads_back_as_the_capture_and_is_the_same_each_time(tmp_path: Path) -> None:
     acted = _act("man", "slide")
     seen = record(acted, name="slides", seed=3, tracker=Tracker(dropouts_per_s=0.5))
@@ -236,13 +224,6 @@ def test_a_swing_begins_and_ends_with_its_velocities() -> None:
     np.testing.assert_allclose(places[-1], by, atol=1e-12)
     np.testing.assert_allclose(places[1] / step, toss.start, atol=1e-3)
     np.testing.assert_allclose((places[3] - places[2]) / step, toss.end, atol=1e-3)
-
-
-def test_a_hand_that_lets_go_slows_down_evenly_and_stays() -> None:
-    velocity = (0.0, 1.0, 2.0)
-    np.testing.assert_allclose(slowed(velocity, 0.1, 0.1), [0.0, 0.05, 0.1])
-    np.testing.assert_allclose(slowed(velocity, 0.5, 0.1), [0.0, 0.05, 0.1])
-    np.testing.assert_allclose(slowed(velocity, 1e-6, 0.1), np.array(velocity) * 1e-6, rtol=1e-4)
 
 
 STEPS = {
