@@ -165,7 +165,7 @@ def test_what_does_not_move_in_its_carry_is_excluded_and_counted(
 def test_where_samples_begin_and_end_tells_nothing(data: None) -> None:
     """Before and after its recorded poses an object rests for two seconds, with the hand at it."""
     options = read_plan(BOXED / "evaluation.toml", takes=["p64_s1"]).carries
-    found = list(carry_captures(f"{EXAMPLE / 'scenes.toml'}:p64_s1", options))
+    found = list(carry_captures(f"{BOXED / 'scenes.toml'}:p64_s1", options))
     assert len(found) == 18
     for each in found:
         thing = each.capture.tag_object(each.object).stream
