@@ -108,8 +108,3 @@ def test_what_is_neither_a_capture_nor_a_place_is_refused_by_its_type(
         capar.CaparError, match=r"expected a Capture, or the folder .* found int: 3"
     ):
         function(3)
-
-
-def test_a_document_that_is_no_observation_is_not_called_an_old_one() -> None:
-    with pytest.raises(capar.CaparError, match="expected an observation, found none"):
-        capar.from_json("{}")

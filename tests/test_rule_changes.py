@@ -2,14 +2,13 @@
 
 import shutil
 import signal
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from capar.cli import app
-from capar.model.errors import CaparError, FileError
+from capar.model.errors import FileError
 from capar.model.facts import MovedBy
 from capar.pipelines.observation import observe, observe_again
 from capar.rulebook.changes import (
@@ -26,7 +25,7 @@ from capar_rules.engine.profiles import profile
 from capar_rules.lint.checking import admitted_profile
 from kb.actionary import Actionary
 from kb.errors import StoreError
-from kb.lookup.observations import NamedSegment, source_files
+from kb.lookup.observations import source_files
 
 DEMO = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
 
@@ -118,18 +117,6 @@ def test_the_segments_change_as_the_comparison_foretold(kept):
     assert renamed(stored(place, profile="thesis").seen, before=after, after=after) == ()
 
 
-def test_a_name_that_shares_a_segment_is_told_beside_the_other_and_how_to_settle_it(kept):
-    raising = LIFT.replace("Lift", "Raising").replace('specialises("Raising", "MoveObjTo").\n', "")
-    (kept / "raising.lp").write_text(raising)
-    place = ["--profile", "thesis", "--actionary", str(kept / "actionary")]
-    told = CliRunner().invoke(app, ["rules", "diff", str(kept / "raising.lp"), *place])
-    changed, count, remedy = told.stdout.splitlines()
-    assert changed.endswith(": MoveObjTo -> MoveObjTo (or Raising)")
-    assert count == "1 segment changes"
-    assert remedy.startswith("Raising and MoveObjTo share a segment.")
-    assert 'precedes("Raising", "MoveObjTo")' in remedy
-
-
 def test_names_that_share_a_segment_are_stored_with_it(kept):
     raising = LIFT.replace("Lift", "Raising").replace('specialises("Raising", "MoveObjTo").\n', "")
     (kept / "raising.lp").write_text(raising)
@@ -165,18 +152,6 @@ def test_what_is_compared_with_is_the_name_that_is_stored(kept):
     changes = renamed(stored(place, profile="thesis").seen, before=without, after=without)
     assert [(each.before, each.after) for each in changes] == [("Lift", "MoveObjTo")]
     assert bearing(place, ["Lift"]) == 1
-
-
-def test_segments_that_appear_or_vanish_are_listed_as_such():
-    (trial,) = captured([str(DEMO)], rules=profile("thesis")).values()
-    names = tuple(NamedSegment("right_hand", at, at, at + 1, 0.0, 0.1, "Nod") for at in (5,))
-    seen = {"drink": replace(trial, names=names)}
-    changes = renamed(seen, before=profile("thesis"), after=profile("thesis"))
-    assert [each.after for each in changes if each.before == "Nod"] == ["none"]
-    segments = observe(DEMO, rules="thesis").segments
-    assert sorted(each.after for each in changes if each.before == "none") == sorted(
-        each.name for each in segments
-    )
 
 
 def test_a_segment_without_steadying_stays_so(tmp_path):
@@ -303,15 +278,3 @@ def test_takes_of_a_bundle_are_found_again(tmp_path):
     ]
     with Actionary.open(place, read_only=True) as store:
         assert {each.rules for each in store.observations()} == {after.fingerprint}
-
-
-def test_the_commands_say_the_same(kept):
-    options = ["--profile", "thesis", "--actionary", str(kept / "actionary")]
-    rules = ["--rules", str(kept / "rules")]
-    (kept / "rules").mkdir()
-    lift = str(kept / "lift.lp")
-    told = CliRunner().invoke(app, ["rules", "diff", lift, *options, *rules])
-    assert "MoveObjTo -> Lift\n1 segment changes" in told.output
-    refused = CliRunner().invoke(app, ["rules", "add", lift, *options, *rules])
-    assert isinstance(refused.exception, CaparError)
-    assert "lacks an Example" in str(refused.exception)

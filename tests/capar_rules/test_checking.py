@@ -125,17 +125,6 @@ def test_a_rule_over_measurements_outside_the_world_is_not_judged_but_noted(tmp_
     assert [(each.code, each.level) for each in found] == [("not-judged", NOTE)]
 
 
-def test_the_nearest_names_are_offered(tmp_path):
-    path = tmp_path / "bad.lp"
-    path.write_text(
-        '%* Bad: bad. *%\nprimitive("Bad").\nspecialises("Bad", "Tuch").\n'
-        'fits(S, "Bad") :- posessed(S, _, _).\n'
-    )
-    remedies = {each.code: each.remedy for each in check(path, profile="thesis")}
-    assert "possessed" in remedies["unknown-predicate"]
-    assert remedies["unknown-primitive"] == "Did you mean Touch?"
-
-
 def test_rules_over_words_of_which_the_world_has_few_are_not_judged_but_noted(tmp_path):
     """What lies above another is measured; the world only knows what is in another, or dips."""
     path = tmp_path / "tap.lp"

@@ -2,7 +2,6 @@
 
 import pytest
 
-from capar.model.errors import UnknownNameError
 from capar_rules.authoring.glossary import Glossary, glossary, words_of_text
 from capar_rules.engine.profiles import Profile, profile
 from capar_rules.engine.solver import rule_file
@@ -91,9 +90,3 @@ def test_a_word_tells_the_rules_that_define_it(words):
         ("Hand", "Object", "Since"),
     )
     assert place.file == str(rule_file("segmentation/possession.lp"))
-
-
-def test_an_unknown_word_tells_the_nearest_alone(words):
-    with pytest.raises(UnknownNameError, match=r"the nearest are .*possesses") as told:
-        words.find("posesses")
-    assert len(str(told.value)) < 200

@@ -66,14 +66,6 @@ def test_questions_and_reports_say_so_on_request_alone(place: Path) -> None:
         assert touching["segments"] == 1 - sips
 
 
-def test_sentences_use_the_person_s_verb(place: Path) -> None:
-    told = run("describe", DEMO, "--corrected", "--actionary", place).stdout
-    assert "sipped" in told
-    assert "drank" not in told
-    assert "held it there" not in told
-    assert "drank" in run("describe", DEMO, "--actionary", place).stdout
-
-
 def test_the_account_scores_the_rules_as_labels_without_a_mapping(
     place: Path, tmp_path: Path
 ) -> None:

@@ -105,11 +105,6 @@ def test_a_bad_label_file_is_refused_with_file_and_line(
     assert says in refused(tmp_path, text)
 
 
-def test_a_typo_in_a_hand_or_a_label_is_met_with_what_was_meant(tmp_path: Path) -> None:
-    assert "Did you mean 'right_hand'?" in refused(tmp_path, HEAD + "rihgt_hand,0,1,Reach\n")
-    assert "Did you mean 'Reach'?" in refused(tmp_path, HEAD + "right_hand,0,1,Raech\n")
-
-
 def test_labels_may_be_of_a_part_of_the_time_and_of_few_actions(
     tmp_path: Path, segments: list[tuple[str, float, float, str]]
 ) -> None:
@@ -121,33 +116,6 @@ def test_labels_may_be_of_a_part_of_the_time_and_of_few_actions(
     assert any("is in no label file" in each for each in found["notices"])
 
 
-def test_the_longest_stretch_that_differs_tells_where_what_and_by_which_segments(
-    tmp_path: Path, segments: list[tuple[str, float, float, str]]
-) -> None:
-    path = tmp_path / "labels.csv"
-    wrong = [("right_hand", 0.0, segments[1][2], segments[0][3])]
-    path.write_text(HEAD + "".join(",".join(map(str, each)) + "\n" for each in wrong))
-    (found,) = evaluated(tmp_path, path)["worst"]
-    assert found["channel"] == "right_hand"
-    assert found["start_s"] == pytest.approx(segments[1][1], abs=0.02)
-    assert found["end_s"] == pytest.approx(segments[1][2], abs=0.02)
-    assert (found["true"], found["found"]) == (segments[0][3], segments[1][3])
-    assert found["segments"].startswith("1 ")
-
-
-def test_the_labels_are_drawn_beside_the_segments_the_same_each_time(
-    tmp_path: Path, segments: list[tuple[str, float, float, str]]
-) -> None:
-    path = tmp_path / "labels.csv"
-    path.write_text(HEAD + f"right_hand,0,{segments[2][2]},Touch\n")
-    pictures = [tmp_path / f"{each}.svg" for each in "ab"]
-    for picture in pictures:
-        evaluated(tmp_path, path, "--plot", picture)
-    one, other = (each.read_bytes() for each in pictures)
-    assert one == other
-    assert b"<svg" in one
-
-
 def test_contacts_are_scored_against_labels_of_one_pair(tmp_path: Path) -> None:
     path = tmp_path / "contacts.csv"
     path.write_text("body,other,start_s,end_s\nright_hand,mug,0.9,3.2\n")
@@ -155,14 +123,6 @@ def test_contacts_are_scored_against_labels_of_one_pair(tmp_path: Path) -> None:
     found = json.loads(result.stdout)
     assert set(found["bodies"]) == {"right_hand"}
     assert 50.0 < found["all"]["f1"] <= 100.0
-
-
-def test_a_contact_with_what_is_not_there_lists_the_bodies(tmp_path: Path) -> None:
-    path = tmp_path / "contacts.csv"
-    path.write_text("body,other,start_s,end_s\nright_hand,mgu,0.9,3.2\n")
-    result = run(DEMO, path, "--kind", "contacts")
-    assert isinstance(result.exception, CaparError)
-    assert "contacts.csv:2: no body 'mgu'" in str(result.exception)
 
 
 def test_a_printed_carry_is_scored_against_its_label(tmp_path: Path) -> None:

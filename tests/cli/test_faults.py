@@ -76,18 +76,3 @@ def test_a_wrong_axis_is_told_with_the_line_to_write(folder: Path, command: str)
 def test_a_wrong_unit_is_told_with_the_line_to_write(folder: Path, command: str) -> None:
     (each,) = told(folder, command, up="y", unit="m")
     assert 'state unit = "dm" for its file, which was read in m' in str(each["message"])
-
-
-def test_axis_and_unit_may_both_be_wrong(folder: Path) -> None:
-    found = told(folder, "inspect", up="-x", unit="m")
-    assert [each["code"] for each in found] == ["up-contradicted", "unit-contradicted"]
-    assert found[0]["values"]["up"] == "y"
-    assert found[1]["values"]["unit"] == "dm"
-
-
-def test_people_read_them_in_both_commands(folder: Path) -> None:
-    told(folder, "inspect", up="z", unit="dm")
-    seen = CliRunner().invoke(app, ["inspect", str(folder)], catch_exceptions=False)
-    assert 'state up = "y"' in " ".join(seen.stdout.split())
-    seen = CliRunner().invoke(app, ["observe", str(folder)], catch_exceptions=False)
-    assert "note [up-contradicted]: 'ball' falls freely" in seen.stderr

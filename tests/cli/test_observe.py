@@ -74,28 +74,6 @@ def test_the_tables_show_segments_and_steps(
     assert Path("out.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_what_both_hands_do_as_one_action_is_told(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    trial = motions.pick_up_with_both_hands(motions.TALL_MAN)
-    monkeypatch.setattr(
-        "extractors.readers.bundle.capture_toml.read_capture", lambda place: trial.capture
-    )
-    assert run(monkeypatch, "observe", "x") == 0
-    lines = [each for each in capsys.readouterr().out.splitlines() if each.startswith("both")]
-    told = [each.partition(") ")[0] for each in lines]
-    assert told == [
-        "both hands: Touch(box",
-        "both hands: Lift(box",
-        "both hands: Lower(box, table",
-        "both hands: TouchWith(box, table",
-    ]
-    _, taken, down, *_ = trial.truth.borders_s["right_hand"]
-    lift = lines[1].partition(") ")[2].removesuffix(" s").split("-")
-    assert abs(float(lift[0]) - taken) < 0.1
-    assert float(lift[1]) < down
-
-
 def test_json_keeps_to_the_published_schema_and_reads_back(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -221,10 +199,3 @@ def test_a_fitted_body_changes_nothing_where_its_parts_are_stated(
     plain = capsys.readouterr().out
     assert run(monkeypatch, "observe", DEMO, "--fit") == 0
     assert capsys.readouterr().out == plain
-
-
-def test_a_body_is_not_fitted_live(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(monkeypatch, "observe", DEMO, "--live", "--fit") != 0
-    assert "--fit" in capsys.readouterr().err

@@ -98,14 +98,6 @@ def test_what_cannot_be_used_is_named_and_ends_with_two(closed, arguments, where
     assert sorted(closed.rglob("*.*")) == before
 
 
-def test_rules_that_nobody_named_are_not_left_out_in_silence(closed):
-    (closed / "shut").rename(closed / "rules")
-    done = capar("rules", "list", cwd=closed)
-    (closed / "rules").rename(closed / "shut")
-    assert done.returncode == 2
-    assert done.stderr.startswith("capar: rules: cannot be read: Permission denied. ")
-
-
 def test_a_rule_is_not_added_to_a_folder_that_takes_none(closed):
     done = capar("rules", "add", "new.lp", "--rules", "ro", cwd=closed)
     assert done.returncode == 2, done.stderr

@@ -9,7 +9,6 @@ from typer.testing import CliRunner
 
 from capar.cli import app
 from capar.model.errors import CaparError, FileError, RuleError
-from capar_rules.lint.checking import faults
 from kb.actionary import Actionary
 
 DEMO = str(Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug")
@@ -180,11 +179,6 @@ def test_a_folder_that_is_none_is_refused():
         run("rules", "list", "--rules", "nowhere")
 
 
-def test_what_is_no_folder_takes_no_rule():
-    with pytest.raises(FileError, match="cannot hold rule files"):
-        run("rules", "add", "sip.lp", "--rules", "sip.lp")
-
-
 def test_a_misspelt_actionary_is_refused_and_not_made():
     for command in (["add", "sip.lp"], ["add", "sip.lp", "--reclassify"]):
         with pytest.raises(FileError, match=r"konwn: is no Actionary\. `capar observe CAPTURE"):
@@ -193,13 +187,6 @@ def test_a_misspelt_actionary_is_refused_and_not_made():
         run("rules", "add", "sip.lp", "--reclassify")
     assert not Path("konwn").exists()
     assert not Path("actionary").exists()
-
-
-def test_an_actionary_of_the_environment_is_not_made_either(monkeypatch):
-    monkeypatch.setenv("CAPAR_ACTIONARY", "konwn")
-    with pytest.raises(FileError, match="is no Actionary"):
-        run("rules", "add", "sip.lp")
-    assert not Path("konwn").exists()
 
 
 def test_a_projects_folder_of_rules_is_made():
@@ -219,37 +206,11 @@ def test_a_rule_on_which_another_rests_stays():
     assert run("rules", "remove", "Sip") == f"removed {sip}\n"
 
 
-def test_a_rule_that_another_asks_about_stays():
-    kept("rules", "sip", SIP)
-    kept(
-        "rules", "sup",
-        '%* Sup: a sip. *%\nprimitive("Sup").\nspecialises("Sup", "MoveObj").\n'
-        'fits(Segment, "Sup") :- fits(Segment, "Sip").\n',
-    )  # fmt: skip
-    with pytest.raises(RuleError, match="Sup"):
-        run("rules", "remove", "Sip")
-
-
 def test_a_file_that_is_no_logic_program_can_be_removed():
     broken = kept(
         "rules", "broken", 'primitive("Broken").\nfits(S, "Broken" :- segment(S, _, _).\n'
     )
     assert run("rules", "remove", "Broken") == f"removed {broken}\n"
-
-
-def test_a_file_with_faults_exits_with_2():
-    kept(".", "bad", BAD)
-    assert CliRunner().invoke(app, ["rules", "check", "bad.lp"]).exit_code == 2
-    told = CliRunner().invoke(app, ["rules", "test", "sip.lp", "--profile", "thesis"])
-    assert (told.exit_code, "lacks an Example" in told.output) == (2, True)
-
-
-def test_a_taken_name_and_an_unknown_general_are_refused():
-    features = ["--features", "101,101,10,00", "--profile", "thesis"]
-    with pytest.raises(RuleError, match="there is a primitive 'Reach' already"):
-        run("rules", "new", "Reach", *features)
-    with pytest.raises(CaparError, match="Did you mean 'MoveObj'"):
-        run("rules", "new", "Sup", *features, "--general", "MovObj")
 
 
 def test_a_rule_is_drafted_from_a_stored_observation():
@@ -260,7 +221,3 @@ def test_a_rule_is_drafted_from_a_stored_observation():
     with pytest.raises(RuleError, match="say --profile extended"):
         run("rules", "new", "Sip", "--from", "drink_from_mug_tall_man/right_hand/3",
             "--actionary", "known", "--profile", "thesis")  # fmt: skip
-
-
-def test_the_rule_of_these_tests_is_sound():
-    assert faults([Path("sip.lp")], profile="thesis") == ()

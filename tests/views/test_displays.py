@@ -1,6 +1,5 @@
 """An observation shows itself: in a terminal, in a notebook, and as data frames."""
 
-import re
 import sys
 from base64 import b64decode
 from dataclasses import replace
@@ -11,7 +10,6 @@ import pandas as pd
 import pytest
 from observations import MUG, drink_from_mug, pick_up_with_both_hands
 
-import capar
 from capar.model.errors import CaparError
 from capar.model.facts import Touching
 
@@ -59,18 +57,6 @@ def test_nothing_in_a_capture_becomes_markup() -> None:
     assert bad not in odd._repr_html_()
 
 
-def test_the_same_observation_gives_the_same_page() -> None:
-    assert drink_from_mug()._repr_html_() == drink_from_mug()._repr_html_()
-
-
-def test_in_a_terminal_it_is_one_short_line_with_its_segments() -> None:
-    seen = drink_from_mug()
-    text = repr(seen)
-    assert "\n" not in text
-    assert len(text) < 400
-    assert re.search(r"right_hand: Reach MoveObjTo", text)
-
-
 def test_a_frame_has_a_row_for_each_segment_contact_or_fact() -> None:
     seen = pick_up_with_both_hands()
     frame = seen.to_frame()
@@ -85,18 +71,7 @@ def test_a_frame_has_a_row_for_each_segment_contact_or_fact() -> None:
     assert list(seen.to_frame("facts")["atom"]) == [str(each) for each in seen.facts]
 
 
-def test_an_observation_without_contacts_gives_a_frame_with_the_same_columns() -> None:
-    seen = pick_up_with_both_hands()
-    nothing = replace(seen, facts=())
-    assert list(nothing.to_frame("contacts").columns) == list(seen.to_frame("contacts").columns)
-
-
 def test_without_pandas_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(CaparError, match=r"pip install 'capar\[frames\]'"):
         drink_from_mug().to_frame()
-
-
-def test_another_frame_is_refused_with_those_that_there_are() -> None:
-    with pytest.raises(capar.CaparError, match=r"no data frame 'segment'.*Did you mean 'segments'"):
-        drink_from_mug().to_frame("segment")  # type: ignore[arg-type]

@@ -10,9 +10,8 @@ from matplotlib.image import imread
 from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 
 from capar.model.errors import FileError
-from capar.model.observation import JointAction, Observation
-from capar.pipelines.linguistic_report import primitive_files, primitive_words
-from capar.views.picture import COLOURS, LOST, LOST_NOTE, OTHERS, Painter, Speeds, draw, rows
+from capar.model.observation import Observation
+from capar.views.picture import LOST, LOST_NOTE, Painter, Speeds, draw, rows
 
 HEADS = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
@@ -79,52 +78,9 @@ def test_the_picture_is_neither_empty_nor_cut(
     assert (edges == 1.0).all(), "ink on the edge of the picture"
 
 
-def test_another_suffix_is_refused_with_those_that_exist(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match=r"no picture format '\.bmp'; there are: \.png, \.svg"):
-        draw(drink_from_mug(), {}, path=tmp_path / "a.bmp")
-
-
 def test_a_folder_that_is_not_there_is_an_error_of_the_user(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="cannot be written"):
         draw(drink_from_mug(), {}, path=tmp_path / "nowhere" / "a.png")
-
-
-def of_many(count: int) -> Observation:
-    """Many end-effectors that do one thing together, as far as a picture can tell."""
-    seen = drink_from_mug()
-    (link,) = seen.links
-    names = tuple(f"marker_of_the_left_glove_{number:02d}" for number in range(count))
-    links = tuple(
-        replace(link, ee=name, segments=tuple(replace(each, ee=name) for each in link.segments))
-        for name in names
-    )
-    first, second = link.segments[0], link.segments[1]
-    joint = JointAction(
-        "MoveObj", ("mug",), names, (1,) * count, second.first, second.last,
-        first.end_s, second.end_s,
-    )  # fmt: skip
-    return replace(seen, links=links, joint=(joint,))
-
-
-@pytest.mark.parametrize("count", [3, 30])
-def test_a_joint_action_of_many_is_drawn_with_room_for_what_they_did(
-    count: int, tmp_path: Path
-) -> None:
-    draw(of_many(count), {}, path=tmp_path / "many.png")
-    height, width, _ = imread(tmp_path / "many.png").shape
-    assert width == 12.0 * 150
-    assert height < 100 * 150
-
-
-def test_a_long_label_is_cut_and_leaves_room(tmp_path: Path) -> None:
-    seen = drink_from_mug()
-    (link,) = seen.links
-    name = "right_hand_" + "x" * 400
-    seen = replace(seen, links=(replace(link, ee=name),))
-    draw(seen, {}, path=tmp_path / "long.svg")
-    text = (tmp_path / "long.svg").read_text(encoding="utf-8")
-    assert "xxx…" in text
-    assert "x" * 200 not in text
 
 
 def test_a_kind_of_action_has_the_same_colour_in_every_picture() -> None:
@@ -140,15 +96,6 @@ def test_a_kind_of_action_has_the_same_colour_in_every_picture() -> None:
     assert len(shared) >= 3
     assert all(looks[0][kind] == each[kind] for each in looks for kind in shared)
     assert len(set(looks[0].values())) == len(looks[0])
-
-
-def test_the_kinds_that_ship_have_a_colour_each() -> None:
-    """So two of them look alike only if a user's rules add kinds of their own."""
-    words = primitive_words(primitive_files())
-    roots = {each.name for each in words if not each.general}
-    assert roots <= set(COLOURS)
-    assert len(set(COLOURS.values())) == len(COLOURS)
-    assert not set(COLOURS.values()) & set(OTHERS)
 
 
 def test_hatching_means_lost_tracking_alone() -> None:

@@ -6,18 +6,15 @@ from difflib import unified_diff
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
+from observations import drink_from_mug, pick_up_with_both_hands
 from rich.console import Console
 from rich.table import Table
 
 from capar.views.tables import (
     aligned,
-    joint_lines,
     observation_text,
     par_text,
-    segment_rows,
     segments_table,
-    step_rows,
     steps_table,
 )
 
@@ -49,31 +46,6 @@ def test_one_changed_field_changes_one_line() -> None:
     ]
 
 
-def test_one_more_condition_adds_one_line() -> None:
-    par = drink_from_mug().upars[0]
-    other = replace(par, post_assertions=par.post_assertions[:-1])
-    (line,) = changed(par_text(par), par_text(other))
-    assert line.startswith("-  afterwards")
-
-
-def test_times_are_rounded_to_the_millisecond() -> None:
-    par = drink_from_mug().ipars[1]
-    assert par_text(replace(par, start_s=par.start_s + 1e-6)) == par_text(par)
-    assert par_text(replace(par, start_s=par.start_s + 2e-3)) != par_text(par)
-
-
-def test_a_complex_par_shows_sequences_the_common_step_and_relations() -> None:
-    text = par_text(pick_up_with_both_hands().complex_par)
-    lines = text.splitlines()
-    assert lines[0] == "COMPLEX PAR PickUpWithBothHands(box, table), 3.600 s"
-    assert [each for each in lines if "in sequence" in each] == [
-        "  left_hand in sequence",
-        "  right_hand in sequence",
-    ]
-    assert "  all together, last" in lines
-    assert lines[-1] == "  left_hand[0] equals right_hand[0]"
-
-
 def test_every_segment_stands_in_the_table_with_its_times_and_features() -> None:
     seen = drink_from_mug()
     text = shown(segments_table(seen))
@@ -89,38 +61,9 @@ def test_every_segment_stands_in_the_table_with_its_times_and_features() -> None
         assert segment.purpose in line
 
 
-def test_what_both_hands_do_as_one_action_is_told_in_a_line() -> None:
-    seen = pick_up_with_both_hands()
-    line = "both hands: MoveObj(box, table) 1.40-2.60 s"
-    assert joint_lines(seen) == (line,)
-    assert line in observation_text(seen).splitlines()
-    assert joint_lines(drink_from_mug()) == ()
-
-
-def test_those_who_are_not_the_two_hands_of_one_are_called_by_name() -> None:
-    seen = pick_up_with_both_hands()
-    (joint,) = seen.joint
-    three = replace(joint, ees=("left_foot", "left_hand", "right_hand"), segments=(0, 2, 2))
-    assert seen.who(three) == "left foot, left hand and right hand"
-
-
-def test_an_unknown_segment_says_where_it_parted_and_what_is_near() -> None:
-    rows = segment_rows(with_unknown())
-    assert rows[2][3] == "Unknown (new in relations at the start; near MoveObj, MoveObjTo)"
-
-
 def test_names_with_brackets_are_printed_as_they_are() -> None:
     seen = replace(drink_from_mug(), capture="[red]x[/red]")
     assert "[red]x[/red]" in shown(segments_table(seen))
-
-
-def test_the_steps_are_printed_with_their_shares() -> None:
-    par = drink_from_mug().complex_par
-    rows = step_rows(par)[1:]
-    assert [each[1] for each in rows][-1] == "ResumePosture"
-    assert sum(float(each[5]) for each in rows) == pytest.approx(1.0, abs=1e-3)
-    text = shown(steps_table(par))
-    assert all(each[5] in text for each in rows)
 
 
 cells = st.text(st.characters(categories=["L", "Nd"]), max_size=8)
