@@ -52,7 +52,10 @@ def explain(
         ),
     ] = None,
 ) -> None:
-    """Say why SEGMENT of CAPTURE has its name: its conditions, and the rules behind it."""
+    """Say why a segment has its name, and why not another one.
+
+    Printed are its conditions with measured value and limit, and the rules behind it.
+    """
     from capar.cli.output import check_writable
     from capar.pipelines.explanation import explained, segment_named
     from capar.views.explanation_text import explanation_lines, notices_about

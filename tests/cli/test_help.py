@@ -1,36 +1,26 @@
-"""What the README says of all commands is what they offer."""
+"""The help lists every command, and each can be asked for its own."""
 
 import re
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
-import typer
+import pytest
+from typer.testing import CliRunner
 
-from capar.cli import app
+from capar.cli import COMMANDS, app
 
-README = (Path(__file__).parents[2] / "README.md").read_text()
+COLUMNS = 80
 
 
-def commands(group: Any, before: tuple[str, ...] = ()) -> Iterator[tuple[str, Any]]:
-    """Every command by all its words."""
-    context = typer.Context(group)
-    for name in group.list_commands(context):
-        each = group.get_command(context, name)
-        if hasattr(each, "list_commands"):
-            yield from commands(each, (*before, name))
-        else:
-            yield " ".join((*before, name)), each
+def test_the_help_lists_each_command_once_in_a_line() -> None:
+    told = CliRunner().invoke(app, ["--help"], env={"COLUMNS": str(COLUMNS)}).stdout
+    rows = told.partition("Look at captures:")[2].splitlines()
+    names = [row.split()[0] for row in rows if re.match(r"  \S", row)]
+    assert sorted(names) == sorted(COMMANDS)
+    assert max(map(len, rows)) <= COLUMNS
+    assert "..." not in "".join(rows)
 
 
-def test_the_readme_names_the_commands_that_print_for_people_or_machines_alone() -> None:
-    without = {
-        name
-        for name, each in commands(typer.main.get_command(app))
-        if not any("--json" in option.opts for option in each.params)
-    }
-    sentence = re.search(r"What it prints for people.*?Errors go", README, re.S)
-    assert sentence is not None
-    named = set(re.findall(r"`([a-z -]+)`", sentence[0])) - {"--json"}
-    assert len(without) > 5
-    assert named == without
+@pytest.mark.parametrize("name", sorted(COMMANDS))
+def test_each_command_has_help(name: str) -> None:
+    result = CliRunner().invoke(app, [name, "--help"])
+    assert result.exit_code == 0
+    assert result.stdout.startswith(f"Usage: root {name}")
