@@ -64,47 +64,43 @@ def read(path: Path, options: Mapping[str, Any]) -> Recording:
     table = dict(zip(names, rows.T, strict=True))
     times = _times(path, table, options)
     groups = options.get("columns") or _groups(names)
-    return _recording(path, table, times, groups, str(options.get("order", "xyzw")))
-
-
-def _recording(
-    path: Path,
-    table: dict[str, Float[np.ndarray, "frames"]],
-    times: Float[np.ndarray, "frames"],
-    groups: Mapping[str, list[str]],
-    order: str,
-) -> Recording:
+    order = str(options.get("order", "xyzw"))
     if order not in ORDERS:
         raise UnknownNameError("order of quaternions", order, ORDERS, where=str(path))
     bodies, markers = {}, {}
     for body, columns in groups.items():
-        for column in columns:
-            if column not in table:
-                raise UnknownNameError("column", column, table, where=str(path))
-        values = np.stack([table[each] for each in columns], axis=1)
-        valid = table.get(f"{body}_valid")
-        if valid is not None:
-            values = np.where((valid > 0.5)[:, None], values, np.nan)
+        values = _values(path, table, body, columns)
         if len(columns) == 7:
             bodies[body] = track(body, times, values[:, :3], values[:, 3:][:, ORDERS[order]])
-        elif len(columns) == 3:
-            markers[body] = values
         else:
-            raise FileError(path, f"{body!r} has {len(columns)} columns; a body has 7, a point 3.")
+            markers[body] = values
     if not bodies and not markers:
         raise FileError(
             path,
             f"no columns like <body>_x,_y,_z,_qx,_qy,_qz,_qw among {sorted(table)[:12]}.",
             "Name them in capture.toml: columns = { hand = [seven names] }.",
         )
-    clock = times if markers else np.empty(0)
     return Recording(
         source=source_of(path, "csv"),
         bodies=bodies,
         orders=dict.fromkeys(bodies, order),
         markers=markers,
-        marker_times=clock,
+        marker_times=times if markers else np.empty(0),
     )
+
+
+def _values(
+    path: Path, table: Mapping[str, Float[np.ndarray, "frames"]], body: str, columns: list[str]
+) -> Float[np.ndarray, "frames columns"]:
+    """The numbers of a body or point; NaN where its column ``_valid`` says so."""
+    for column in columns:
+        if column not in table:
+            raise UnknownNameError("column", column, table, where=str(path))
+    if len(columns) not in {3, 7}:
+        raise FileError(path, f"{body!r} has {len(columns)} columns; a body has 7, a point 3.")
+    values = np.stack([table[each] for each in columns], axis=1)
+    valid = table.get(f"{body}_valid")
+    return values if valid is None else np.where((valid > 0.5)[:, None], values, np.nan)
 
 
 def _groups(names: list[str]) -> dict[str, list[str]]:

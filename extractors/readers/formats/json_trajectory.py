@@ -8,7 +8,6 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
 
 from capar.model.capture import Stream
 from capar.model.errors import FileError
@@ -78,16 +77,6 @@ def _body(path: Path, name: str, data: bytes, scale: float) -> Stream:
             f"trajectory {name!r} is not as it should be ({type(error).__name__}: {error}).",
             "It is a list of {timeStamp, rotation: 3x3, translation: 3}.",
         ) from error
-    return _stream(path, name, times, matrices, places)
-
-
-def _stream(
-    path: Path,
-    name: str,
-    times: Float[np.ndarray, "frames"],
-    matrices: Float[np.ndarray, "frames 3 3"],
-    places: Float[np.ndarray, "frames 3"],
-) -> Stream:
     frames = len(times)
     if matrices.shape != (frames, 3, 3) or places.shape != (frames, 3):
         raise FileError(path, f"trajectory {name!r}: rotations {matrices.shape}, {places.shape}.")

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from capar.model.capture import Source, Stream, notice
+from capar.model.capture import notice
 from capar.model.errors import FileError
 from extractors.readers.files import source_of
 from extractors.readers.recording import Recording, iso_of_stamp, track
@@ -46,27 +46,21 @@ def read(path: Path, options: Any) -> Recording:
         kinds = ", ".join(sorted(_KINDS))
         raise FileError(path, f"no message of a kind that is read here: {kinds}.")
     start = min(min(each) for each in samples.values())
-    bodies = {name: _stream(name, each, start) for name, each in sorted(samples.items())}
+    bodies = {}
+    for name, poses in sorted(samples.items()):
+        values = np.array(list(poses.values()))
+        seconds = np.array([(stamp - start) * 1e-9 for stamp in poses])
+        bodies[name] = track(name, seconds, values[:, :3], values[:, 3:])
+    file = path
+    if path.is_dir():
+        storage = sorted(each for each in path.iterdir() if each.suffix in {".db3", ".mcap"})
+        file = storage[0] if storage else path / "metadata.yaml"
     return Recording(
-        source=_source(path, iso_of_stamp(start)),
+        source=source_of(file, "rosbag", recorded_at=iso_of_stamp(start)),
         bodies=bodies,
         unit_m=1.0,
         notices=(notice("doubled-stamps", samples=doubled),) if doubled else (),
     )
-
-
-def _source(path: Path, recorded_at: str) -> Source:
-    if not path.is_dir():
-        return source_of(path, "rosbag", recorded_at=recorded_at)
-    storage = sorted(each for each in path.iterdir() if each.suffix in {".db3", ".mcap"})
-    file = storage[0] if storage else path / "metadata.yaml"
-    return source_of(file, "rosbag", recorded_at=recorded_at)
-
-
-def _stream(name: str, samples: dict[int, tuple[float, ...]], start: int) -> Stream:
-    times = np.array([(stamp - start) * 1e-9 for stamp in samples])
-    values = np.array(list(samples.values()))
-    return track(name, times, values[:, :3], values[:, 3:])
 
 
 def _samples(path: Path) -> Iterator[Sample]:
