@@ -1,5 +1,6 @@
 """The pipeline from a capture to reasons: observe it, then say why, and why not."""
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -28,6 +29,9 @@ from extractors.measure import measure
 
 AROUND_S = 1.0
 """So long before and after the segment is drawn [s]."""
+
+SAMPLES = 120
+"""Distances of surfaces are drawn at so many frames at most, and at those that decide [1]."""
 
 _SEGMENT = re.compile(r"seg\((\w+),(\d+)\)")
 
@@ -194,7 +198,11 @@ def explanation_plot(seen: Explained, told: Explanation) -> Plot:
         groups.setdefault((one.quantity, one.bodies, start), []).append(one)
     panels = []
     for every in groups.values():
-        series = measures.series(every[0], np.arange(first, last + 1))
+        frames = np.arange(first, last + 1)
+        if every[0].quantity == "distance":
+            ends = [frame for one in every for frame in (one.first, one.last)]
+            frames = np.unique([*frames[:: math.ceil(len(frames) / SAMPLES)], *ends, last])
+        series = measures.series(every[0], frames)
         if series is not None:
             panels.append(_panel(every, series, rate))
     title = f"{SegmentAddress(told.ee, told.index)}  {told.name}  "

@@ -40,9 +40,6 @@ from extractors.signals.intervals import frame_rate
 
 MILLI = 1000.0
 
-SAMPLES = 120
-"""At so many frames of an interval at most distances of surfaces are measured [1]."""
-
 HALF_RIGHT_MRAD = 1000.0 * math.pi / 4.0
 """A body within this angle of a direction goes that way [1/1000 rad]: rules compare squares."""
 
@@ -294,9 +291,6 @@ def _distance(known: Measures, asked: Measured, frames: Frames) -> Series | None
     pair = calibration.sought(one, other) or calibration.sought(other, one)
     if pair is None or pair.found is Found.NEVER:
         return None
-    if len(frames) > SAMPLES:
-        step = math.ceil(len(frames) / SAMPLES)
-        frames = np.unique([*frames[::step], asked.first, asked.last, frames[-1]])
     apart = MILLI * np.min(list(_parts_apart(known.measurements, pair, frames)), axis=0)
     bars = known.bars(Touching, body=pair.first, other=pair.second)
     limits = tuple(sorted({MILLI * pair.touch_m, MILLI * pair.release_m}))
