@@ -117,8 +117,8 @@ def _why_not(
         found = why_not(seen.explainer, one, name, limit=limit)
         near = () if name in one.general else seen.nearest_rules(one, name)
         if json:
-            notices = [notice.document() for notice in notices_about([one], seen.observation)]
-            told = {"ee": one.ee, "index": one.index, "is": one.name, "notices": notices}
+            about = [notice.document() for notice in notices_about([one], seen.observation)]
+            told = {"ee": one.ee, "index": one.index, "is": one.name, "notices": about}
             rules = [asdict(rule) | {"sentence": rule.sentence} for rule in near]
             rows += [
                 told | {"sentence": each.sentence, "rules": rules} | _placed(asdict(each), seen)

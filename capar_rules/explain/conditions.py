@@ -18,8 +18,10 @@ OPPOSITE = {">=": "<", "<": ">=", "<=": ">", ">": "<="}
 BESIDE = ("joins_in(", "looks(")
 """Prefixes of atoms that accompany a name and are no reason for it."""
 
-NO_REASON = ("segment(", "border(", "member(", "no_contact(", "uncounted(", "met_", "newly_met(")
-NO_REASON = (*NO_REASON, "moved_before(", "lets_go(", "takes(")
+NO_REASON = (
+    *("segment(", "border(", "member(", "no_contact(", "uncounted(", "met_", "newly_met("),
+    *("moved_before(", "lets_go(", "takes("),
+)
 """Prefixes of atoms whose own derivation says where a border is, or what was measured."""
 
 FEATURES, DOUBTED, OWN = "features(", "doubted(", 3

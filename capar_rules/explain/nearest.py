@@ -39,6 +39,9 @@ SHARES = {"not": 0.6, "contact_at": 0.4, "no_contact": 0.45, "moved": 0.4, "stay
 LEAST_SHARE = 0.0
 """The same of all other conditions [1]."""
 
+SCENE: tuple[Signature, ...] = (("link", 3), ("tag", 2), ("gap", 4), ("lifted", 2))
+"""Conditions of what bodies are and where they were before, which could not be otherwise."""
+
 SIDES = ("start", "end", "change", "force")
 """What the four strings of a row of the feature table are about."""
 
@@ -166,7 +169,8 @@ def _needed(
     atom = _valued(literal.atoms[0].text, bound)
     atom = _TOKEN.sub(lambda found: found[0] if found[0].startswith('"') else "_", atom)
     if literal.atoms[0].signature == FEATURE:
-        yield from _bits(*split_arguments(atom), atoms, conditions)
+        segment, side, wanted = split_arguments(atom)
+        yield from _bits(segment, side, wanted, atoms, conditions)
     elif literal.atoms[0].signature == FITS and not literal.sign:
         general = split_arguments(atom)[1].strip('"')
         (near,) = nearest_rules(base, [general], conditions) or [NearRule(general, "", ())]
@@ -530,9 +534,10 @@ class _Atoms:
 
 
 def _may_fail(literal: Literal, sentences: Sentences) -> bool:
-    if literal.kind != "atom":
+    """Whether a condition could be otherwise: not what a body is."""
+    signature = literal.atoms[0].signature if literal.kind == "atom" else SCENE[0]
+    if signature in SCENE:
         return False
-    signature = literal.atoms[0].signature
     return bool(literal.sign) or signature == FEATURE or sentences.describes(signature)
 
 

@@ -18,6 +18,7 @@ from capar_rules.engine.syntax import (
     towards,
 )
 from capar_rules.explain.explanation import Explainer
+from capar_rules.explain.nearest import SCENE
 from capar_rules.explain.sentences import Scene
 from capar_rules.lint.audit import physics, words_of
 from capar_rules.lint.text_checks import known
@@ -161,7 +162,6 @@ def _text(term: object) -> str:
 # The counterfactual worlds of a segment
 
 READ: tuple[Signature, ...] = (("reads", 5), ("holding", 4), ("moved", 2))
-SCENE: tuple[Signature, ...] = (("link", 3), ("tag", 2), ("gap", 4), ("lifted", 2))
 BESIDE: Signature = ("read_beside", 5)
 """Contacts at the borders of objects that the end-effector does not possess."""
 

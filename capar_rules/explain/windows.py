@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from capar.model.facts import Fact, FactIntervals, Observed, RateMhz
-from capar_rules.borders.border_numbers import LastTick, MovesDuring, Shares, Tick, Within
-from capar_rules.borders.ticks import in_frames, times
+from capar_rules.borders.border_numbers import LastTick, MovesDuring, Tick, Within
+from capar_rules.borders.ticks import Shares, in_frames, times
 
 BUCKET = 256
 """Number of frames, or ticks, for each entry of the index."""
