@@ -15,7 +15,7 @@ DEEPEST = 3
 WORDS = {">=": "at least", "<=": "at most", ">": "more than", "<": "less than"}
 OPPOSITE = {">=": "<", "<": ">=", "<=": ">", ">": "<="}
 
-BESIDE = ("joins_in(", "looks(")
+BESIDE = ("joins_in(", "looks(", "kept_from(")
 """Prefixes of atoms that accompany a name and are no reason for it."""
 
 NO_REASON = (

@@ -1,10 +1,12 @@
 """Why a segment has its name: its conditions, the nearest other name, and the derivation."""
 
+import re
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from itertools import count
 from pathlib import Path
 
 from capar.model.errors import RuleError
@@ -13,7 +15,7 @@ from capar.model.observation import Segment
 from capar.model.par import UNKNOWN
 from capar_rules.borders.border_numbers import number_borders
 from capar_rules.engine.profiles import Profile
-from capar_rules.engine.syntax import Statement, parse_text
+from capar_rules.engine.syntax import FITS, Statement, parse_text, split_arguments
 from capar_rules.explain.conditions import Condition, Conditions, clauses, doubts, leading
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
 from capar_rules.explain.nearest import (
@@ -31,6 +33,8 @@ from capar_rules.explain.sentences import RuleBase as RuleBase
 from capar_rules.explain.sentences import Scene, listed
 from capar_rules.explain.sentences import rule_base as rule_base
 from capar_rules.explain.windows import Windows
+
+_UNNAMED = re.compile(r"(?<=[(,])_(?=[,)])")
 
 ALWAYS = (("segment", 3), ("also", 2))
 TOGETHER = 16
@@ -105,7 +109,28 @@ def _naming(statements: tuple[Statement, ...], name: str) -> tuple[Statement, ..
     for other in overruling(statements, name):
         fit = f'fits(Segment,"{other}"); fits(Segment,"{name}")'
         found += parse_text(f'overruled(Segment,"{name}") :- {fit}.')
-    return tuple(found)
+    return (*found, *_kept_from(statements, name))
+
+
+def _kept_from(statements: Sequence[Statement], name: str) -> Iterator[Statement]:
+    """Rules by which what alone keeps a segment from a more specific name stands in its tree.
+
+    Of a rule of a more specific primitive one condition is a negation, and all but that one hold:
+    what holds instead decided that the segment has the more general name.
+    """
+    others = {f'"{other}"' for other in overruling(statements, name)}
+    for rule in statements:
+        for head in rule.heads if rule.body else ():
+            segment, other = split_arguments(head.text)[:2] if head.signature == FITS else ("", "")
+            for literal in rule.body if other in others else ():
+                if literal.kind == "atom" and literal.sign == 1:
+                    number = count()
+                    atom = _UNNAMED.sub(lambda _, n=number: f"Unnamed{next(n)}", literal.atoms[0].text)
+                    rest = [each.text for each in rule.body if each is not literal]
+                    body = "; ".join([*rest, atom, f'named({segment},"{name}")'])
+                    kept = f"kept_from({segment},{other})"
+                    yield from parse_text(f'also(named({segment},"{name}"),{kept}) :- {body}.')
+                    yield from parse_text(f"also({kept},{atom}) :- {body}.")
 
 
 @dataclass(frozen=True)
