@@ -17,6 +17,7 @@ from capar_rules.borders.border_numbers import number_borders
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.syntax import FITS, Statement, parse_text, split_arguments
 from capar_rules.explain.conditions import Condition, Conditions, clauses, doubts, leading
+from capar_rules.explain.conditions import Reason as Reason
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
 from capar_rules.explain.nearest import (
     FEATURE,
@@ -28,7 +29,6 @@ from capar_rules.explain.nearest import (
     neighbours,
     overruling,
 )
-from capar_rules.explain.reason import Reason as Reason
 from capar_rules.explain.sentences import RuleBase as RuleBase
 from capar_rules.explain.sentences import Scene, listed
 from capar_rules.explain.sentences import rule_base as rule_base
@@ -125,7 +125,9 @@ def _kept_from(statements: Sequence[Statement], name: str) -> Iterator[Statement
             for literal in rule.body if other in others else ():
                 if literal.kind == "atom" and literal.sign == 1:
                     number = count()
-                    atom = _UNNAMED.sub(lambda _, n=number: f"Unnamed{next(n)}", literal.atoms[0].text)
+                    atom = _UNNAMED.sub(
+                        lambda _, n=number: f"Unnamed{next(n)}", literal.atoms[0].text
+                    )
                     rest = [each.text for each in rule.body if each is not literal]
                     body = "; ".join([*rest, atom, f'named({segment},"{name}")'])
                     kept = f"kept_from({segment},{other})"
