@@ -1,6 +1,6 @@
 """What a user should know about a capture that is no error: notices, with a sentence each."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,8 +30,9 @@ SIDES_EXCHANGED = (
 )
 
 
-def up_contradicted(bodies: Sequence[str], fields: Mapping[str, Any]) -> str:
+def up_contradicted(each: "Notice") -> str:
     """Gravity or rests that the declared upward axis does not fit."""
+    bodies, fields = each.bodies, each.fields
     if fields["shown"] == "rest":
         found = f"{bodies[0]!r} rests {fields['where']} {bodies[1]!r}, with nothing under it"
     else:
@@ -45,8 +46,9 @@ def up_contradicted(bodies: Sequence[str], fields: Mapping[str, Any]) -> str:
     return f'{found}: {remedy}, which was read with "{fields["declared"]}"'
 
 
-def unit_contradicted(bodies: Sequence[str], fields: Mapping[str, Any]) -> str:
+def unit_contradicted(each: "Notice") -> str:
     """Lengths that no person has, and falls by another acceleration than gravity's."""
+    bodies, fields = each.bodies, each.fields
     if fields["shown"] == "person":
         first, second = bodies
         found = f"{first!r} and {second!r} of one person are {fields['size_m']:g} m apart at most"
@@ -61,27 +63,6 @@ def unit_contradicted(bodies: Sequence[str], fields: Mapping[str, Any]) -> str:
     return f"{found}: {remedy}, which was read in {fields['declared']}"
 
 
-def distance_contradicted(bodies: Sequence[str], fields: Mapping[str, Any]) -> str:
-    """A stated distance that sure contact does not fit."""
-    first, second = bodies
-    taken, shown = (1e3 * float(fields[name]) for name in ("touch_m", "shown_m"))
-    return (
-        f"{first!r} and {second!r} are stated to touch within {taken:.0f} mm, but "
-        f"{fields['frames']} frames of sure contact show {shown:.0f} mm; "
-        "state that, or leave distance_m out"
-    )
-
-
-def mount_gap(bodies: Sequence[str], fields: Mapping[str, Any]) -> str:
-    """Surfaces that do not meet where one body carries another."""
-    first, second = bodies
-    gap, taken = (1e3 * float(fields[name]) for name in ("shown_m", "touch_m"))
-    return (
-        f"{first!r} carries {second!r} steadily in {fields['frames']} frames with a gap of "
-        f"{gap:.0f} mm, but surfaces touch within {taken:.0f} mm: a mount, a mesh or a fit is off"
-    )
-
-
 WHY_UNMOVED: Mapping[str, str] = {
     "nobody": "nothing that is recorded was near and went with it: is a sensor missing, is the "
     "unit of a file wrong, or was it tracked wrongly?",
@@ -92,8 +73,9 @@ WHY_UNMOVED: Mapping[str, str] = {
 """What would explain that nothing moves an object, by what the rules found."""
 
 
-def no_mover(bodies: Sequence[str], fields: Mapping[str, Any]) -> str:
+def no_mover(each: "Notice") -> str:
     """Motion that nothing explains."""
+    bodies, fields = each.bodies, each.fields
     share = 100.0 * float(fields["share"])
     often = "" if fields["times"] == 1 else f", the longest of {fields['times']} times"
     return (
@@ -157,8 +139,11 @@ class Notice:
 
     @property
     def fields(self) -> dict[str, Any]:
-        """Times and values by name."""
-        return {"start_s": self.start_s, "end_s": self.end_s, **dict(self.values)}
+        """Times and values by name; lengths also in millimetres: ``touch_m`` as ``touch_mm``."""
+        lengths = {f"{k[:-1]}mm": 1e3 * float(v) for k, v in self.values if k.endswith("_m")}
+        listed = {"all": ", ".join(self.bodies), "count": len(self.bodies)}
+        times = {"start_s": self.start_s, "end_s": self.end_s}
+        return {**times, **lengths, **listed, **dict(self.values)}
 
     def document(self) -> dict[str, Any]:
         """Its JSON form: the fields that it has, and the message for those who read no code."""
@@ -214,11 +199,6 @@ def _is_value(value: object) -> bool:
     return isinstance(value, str | int | float)
 
 
-def _contact_tolerance(each: Notice) -> str:
-    source = "as the capture states" if each["stated"] else "from the sensors' noise at rest"
-    return f"bodies count as touching within {1e3 * float(each['tolerance_m']):.1f} mm, {source}"
-
-
 def _long_gap(each: Notice) -> str:
     """Of one gap as it was read, or of all of a body's, with what follows from them."""
     (body,), values = each.bodies, dict(each.values)
@@ -234,28 +214,6 @@ def _long_gap(each: Notice) -> str:
     )  # fmt: skip
     span = f"{each.start_s:.2f} to {each.end_s:.2f} s"
     return f"{body!r} was lost {often}from {span}; {follows}"
-
-
-def _objects_left_out(each: Notice) -> str:
-    return (
-        f"{len(each.bodies)} of {each['objects']} objects have no shape and are left out: "
-        f"{', '.join(each.bodies)}"
-    )
-
-
-def _offset_and_position(each: Notice) -> str:
-    return (
-        f"{', '.join(each.bodies[:5])}: OFFSET and position channels both given; a root adds "
-        "them, any other joint takes the channels alone"
-    )
-
-
-def _pivot_distance(each: Notice) -> str:
-    first, second = each.bodies
-    return (
-        f"{first!r} and {second!r} count as touching while their origins are within "
-        f"{1e3 * float(each['distance_m']):.0f} mm"
-    )
 
 
 EVIDENCE: Mapping[str, str] = {
@@ -318,7 +276,10 @@ KINDS: Mapping[str, NoticeKind] = {
     "no-shape": NoticeKind(
         "{0!r} has no shape, so no contact of it is known", "bodies without a shape"
     ),
-    "objects-left-out": NoticeKind(_objects_left_out, "groups of objects left out"),
+    "objects-left-out": NoticeKind(
+        "{count} of {objects} objects have no shape and are left out: {all}",
+        "groups of objects left out",
+    ),
     "assumed-support": NoticeKind("{0!r} is assumed: {assumed}", "assumed supports"),
     "moving-ground": NoticeKind(
         "{0!r} goes by under the feet of {agent} at {speed_mps:.2f} m/s, as a treadmill does: feet "
@@ -326,7 +287,9 @@ KINDS: Mapping[str, NoticeKind] = {
         "grounds that go by under the feet",
     ),
     "pivot-distance": NoticeKind(
-        _pivot_distance, "pairs that touch by the distance of their origins", of_pair=True
+        "{0!r} and {1!r} count as touching while their origins are within {distance_mm:.0f} mm",
+        "pairs that touch by the distance of their origins",
+        of_pair=True,
     ),
     "touch-estimated": NoticeKind(
         _touch_estimated,
@@ -334,15 +297,19 @@ KINDS: Mapping[str, NoticeKind] = {
         of_pair=True,
     ),
     "distance-contradicted": NoticeKind(
-        lambda each: distance_contradicted(each.bodies, each.fields),
+        "{0!r} and {1!r} are stated to touch within {touch_mm:.0f} mm, but {frames} frames of sure "
+        "contact show {shown_mm:.0f} mm; state that, or leave distance_m out",
         "stated distances that the recording contradicts",
         fault=True,
     ),
     "mount-gap": NoticeKind(
-        lambda each: mount_gap(each.bodies, each.fields), "bodies carried with a gap", fault=True
+        "{0!r} carries {1!r} steadily in {frames} frames with a gap of {shown_mm:.0f} mm, but "
+        "surfaces touch within {touch_mm:.0f} mm: a mount, a mesh or a fit is off",
+        "bodies carried with a gap",
+        fault=True,
     ),
     "no-mover": NoticeKind(
-        lambda each: no_mover(each.bodies, each.fields),
+        no_mover,
         "objects that move and nothing moves them",
         fault=True,
     ),
@@ -352,12 +319,12 @@ KINDS: Mapping[str, NoticeKind] = {
         "times without contact in which something was moved",
     ),
     "up-contradicted": NoticeKind(
-        lambda each: up_contradicted(each.bodies, each.fields),
+        up_contradicted,
         "falls and rests against the upward axis",
         fault=True,
     ),
     "unit-contradicted": NoticeKind(
-        lambda each: unit_contradicted(each.bodies, each.fields),
+        unit_contradicted,
         "sizes that no person has",
         fault=True,
     ),
@@ -372,11 +339,16 @@ KINDS: Mapping[str, NoticeKind] = {
     "nothing-acts": NoticeKind(
         'no sensor acts, so no action is told; state role = "acts" for the hands and feet that do'
     ),
-    "contact-tolerance": NoticeKind(_contact_tolerance),
+    "contact-tolerance": NoticeKind(
+        "bodies count as touching within {tolerance_mm:.1f} mm (stated by the capture: {stated})"
+    ),
     "doubled-stamps": NoticeKind("{samples} samples repeat a stamp; the last of each is kept"),
     "flicker": NoticeKind(_flicker),
     "no-unit": NoticeKind("the file states no unit; lengths are shown as if it were metres"),
-    "offset-and-position": NoticeKind(_offset_and_position),
+    "offset-and-position": NoticeKind(
+        "{all}: OFFSET and position channels both given; a root adds them, any other joint takes "
+        "the channels alone"
+    ),
     "rate-mistyped": NoticeKind(
         "rate_hz = {stated_hz:g}, but the files have {recorded_hz} frames a second; is it mistyped?"
     ),
