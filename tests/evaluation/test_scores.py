@@ -167,14 +167,13 @@ def test_where_samples_begin_and_end_tells_nothing(data: None) -> None:
     options = read_plan(BOXED / "evaluation.toml", takes=["p64_s1"]).carries
     found = list(carry_captures(f"{BOXED / 'scenes.toml'}:p64_s1", options))
     assert len(found) == 18
-    for each in found:
-        thing = each.capture.tag_object(each.object).stream
-        hand = each.capture.sensor("right_hand").stream
-        assert each.start_s == 2.0
-        assert each.capture.times[-1] == pytest.approx(each.end_s + 2.0, abs=0.03)
+    for capture, label in found:
+        thing = capture.tag_object(label.object).stream
+        assert label.start == 2.0
+        assert capture.times[-1] == pytest.approx(label.end + 2.0, abs=0.03)
         assert not thing.lost.any()
-        assert np.array_equal(thing.positions, hand.positions)
-        rests = thing.times < each.start_s
+        assert np.array_equal(thing.positions, capture.sensor("right_hand").stream.positions)
+        rests = thing.times < label.start
         assert np.ptp(thing.positions[rests], axis=0).max() == 0.0
 
 
