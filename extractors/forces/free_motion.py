@@ -218,7 +218,8 @@ def _ends_of_slide(surface: Surface, half: Vector) -> list[Event]:
 
 def _landing(surface: Surface, half: Vector) -> Event:
     def lands(_: float, state: State) -> float:
-        return float(state[2] - half[2] - surface.top_m)
+        # A body that hops off the surface starts above it, whatever the rounding.
+        return float(state[2] - half[2] - surface.top_m + 1e-9)
 
     return _terminal(lands)
 
