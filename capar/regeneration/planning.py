@@ -191,7 +191,7 @@ class Draft:
 
     def beyond(self) -> str:
         """What a freely turning palm misses by more than any grip gains; empty if nothing."""
-        for hold in self.source.holds:
+        for hold in led_holds(self.source.holds, self.source.co_held):
             grips, solver = self._gripped([hold], Turn()), self._solver()
             solver.turning = FREELY
             for frame in self.key_frames([hold]):
