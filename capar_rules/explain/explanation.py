@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from itertools import count
 from pathlib import Path
 
 from capar.model.errors import RuleError
@@ -124,10 +123,8 @@ def _kept_from(statements: Sequence[Statement], name: str) -> Iterator[Statement
             segment, other = split_arguments(head.text)[:2] if head.signature == FITS else ("", "")
             for literal in rule.body if other in others else ():
                 if literal.kind == "atom" and literal.sign == 1:
-                    number = count()
-                    atom = _UNNAMED.sub(
-                        lambda _, n=number: f"Unnamed{next(n)}", literal.atoms[0].text
-                    )
+                    first, *parts = _UNNAMED.split(literal.atoms[0].text)
+                    atom = first + "".join(f"Unnamed{n}{part}" for n, part in enumerate(parts))
                     rest = [each.text for each in rule.body if each is not literal]
                     body = "; ".join([*rest, atom, f'named({segment},"{name}")'])
                     kept = f"kept_from({segment},{other})"
