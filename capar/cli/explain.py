@@ -139,8 +139,8 @@ def _why_not(
     if json:
         print_json(rows)
         return
-    about = notices_about(asked, seen.observation)
-    for line in reservation_lines(about, called=seen.explainer.names, unshaped=seen.unshaped):
+    notices = notices_about(asked, seen.observation)
+    for line in reservation_lines(notices, called=seen.explainer.names, unshaped=seen.unshaped):
         typer.echo(line)
 
 
