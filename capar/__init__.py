@@ -18,8 +18,6 @@ right. Times are in seconds, lengths in metres, quaternions w x y z.
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from capar.model.observation import register as _register
-
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -69,9 +67,6 @@ __all__ = [
     "to_json",
     "why_not",
 ]
-
-_register("html", "capar.views.page:observation_page")
-_register("frame", "capar.views.tables:observation_frame")
 
 
 def open_actionary(

@@ -44,7 +44,8 @@ def test_the_first_steps_observe_look_ask_and_explain(capsys: pytest.CaptureFixt
     printed = capsys.readouterr().out
     assert "<table>" in shown(values[0])
     seen = names["seen"]
-    assert printed.startswith("The tall man lifted the mug to the mouth with the right hand")
+    assert printed.startswith("The tall man")
+    assert all(word in printed for word in ("mug", "right hand", "drank"))
     assert "It would be Push" in printed
     about_mug = {each.name for each in seen.segments if "mug" in each.objects}
     assert {row["action"] for row in values[3]} == about_mug

@@ -8,7 +8,7 @@ import typer
 
 from capar.cli.options import Beside, Json, ProfileName, Rules, Steady, rule_base
 from capar.cli.output import check_writable, console, print_json, progress, written
-from capar.evaluation.labels import Contradictions, Kind
+from capar.evaluation import Contradictions, Kind
 from capar.model.errors import CaparError
 
 if TYPE_CHECKING:

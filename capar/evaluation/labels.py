@@ -9,7 +9,6 @@ import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -17,34 +16,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from capar.evaluation import Contradictions, Kind
 from capar.model.errors import FileError, UnknownNameError
 from extractors.readers.files import read_bytes, read_text
-
-
-class Kind(StrEnum):
-    """What labels are about."""
-
-    ACTIONS = "actions"
-    """What each link does, from when to when; one action at a time."""
-
-    CONTACTS = "contacts"
-    """When two bodies touch."""
-
-    CARRIES = "carries"
-    """From when to when an object is carried."""
-
-    CONTAINERS = "containers"
-    """What goes into a container; the capture itself tells, by first and last poses."""
-
-    EVENTS = "events"
-    """What a hand does at about a time; a label is a window in which it must be found."""
-
-
-class Contradictions(StrEnum):
-    """What to do about marks that end before they start, and marks that overlap."""
-
-    REFUSE = "refuse"
-    LEAVE_OUT = "leave-out"
 
 
 @dataclass(frozen=True, slots=True, order=True)

@@ -18,7 +18,7 @@ from typing import Any, Self
 import numpy as np
 from jaxtyping import Bool, Float
 
-from capar.evaluation.labels import Kind
+from capar.evaluation import Kind
 from capar.model.geometry import runs
 from capar.model.observation import Segment
 

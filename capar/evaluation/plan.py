@@ -7,7 +7,8 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
-from capar.evaluation.labels import Contradictions, Kind, Labels, in_seconds, read_labels
+from capar.evaluation import Contradictions, Kind
+from capar.evaluation.labels import Labels, in_seconds, read_labels
 from capar.evaluation.metrics import Interval
 from capar.model.errors import CaparError, FileError, UnknownNameError
 from capar.model.observation import Observation, ObservedLink, Segment

@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
+from capar.evaluation import Kind
 from capar.evaluation.contacts import score_contacts
 from capar.evaluation.events import score_events
-from capar.evaluation.labels import Kind, Labels, check_known, check_span
+from capar.evaluation.labels import Labels, check_known, check_span
 from capar.evaluation.metrics import (
     Channel,
     Evaluation,

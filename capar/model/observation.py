@@ -12,24 +12,16 @@ from capar.model.facts import Fact
 from capar.model.locations import ConstraintLocation, GuideLocation, SampledTrack
 from capar.model.par import UNKNOWN, ComplexPar, FeatureSet, Ipar, NamingRule, Style, Upar
 
-_PLACES: dict[str, str] = {}
-
-
-def register(form: str, place: str) -> None:
-    """Say which function shows values in some form.
-
-    ``form``: ``html``, ``frame`` ... ``place``: the function, as ``MODULE:FUNCTION``.
-    """
-    _PLACES[form] = place
+VIEWS = {
+    "html": "capar.views.page:observation_page",
+    "frame": "capar.views.tables:observation_frame",
+}
+"""What shows an observation in some form, as ``MODULE:FUNCTION``; imported when asked for."""
 
 
 def display(form: str) -> Callable[..., Any]:
-    """The function that shows values in that form.
-
-    Raises:
-        KeyError: No function was registered for it.
-    """
-    module, _, function = _PLACES[form].partition(":")
+    """The function that shows observations in that form, a key of ``VIEWS``."""
+    module, _, function = VIEWS[form].partition(":")
     show: Callable[..., Any] = getattr(import_module(module), function)
     return show
 

@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pympi import Eaf, TextGrid
 
-from capar.evaluation.labels import Contradictions, Kind, Label, Labels, in_seconds, read_labels
+from capar.evaluation import Contradictions, Kind
+from capar.evaluation.labels import Label, Labels, in_seconds, read_labels
 from capar.model.errors import FileError
 
 RECORDING = "bimacs_optitrack"

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from observations import drink_from_mug, with_unknown
 
-from capar.evaluation.labels import Kind
+from capar.evaluation import Kind
 from capar.evaluation.plan import (
     LabelMapping,
     check_names,

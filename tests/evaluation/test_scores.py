@@ -13,9 +13,10 @@ from observations import drink_from_mug, pick_up_with_both_hands
 from typer.testing import CliRunner
 
 from capar.cli import app
+from capar.evaluation import Kind
 from capar.evaluation.contacts import ContactCounts, compare_contacts, read_contact_arrays
 from capar.evaluation.events import OVER_TABLE, PASS, REGRASP, Event, EventCounts, compare_events
-from capar.evaluation.labels import Kind, Label, Labels
+from capar.evaluation.labels import Label, Labels
 from capar.evaluation.metrics import Interval, report, summed
 from capar.evaluation.objects import (
     Landing,

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from observations import drink_from_mug
 
 from capar.cli.actionary import correct as command
-from capar.evaluation.labels import Kind, read_labels
+from capar.evaluation import Kind
+from capar.evaluation.labels import read_labels
 from capar.model.errors import UnknownNameError
 from capar.model.observation import SegmentAddress
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
