@@ -202,10 +202,10 @@ def questions(_: str) -> Any:
 
 def _answer(code: int, out: str, err: str) -> Any:
     if code:
-        return {"exit": code, "error": first_line(err)}
+        return {"exit": code, "error": re.sub(r"\S*/tmp\S*", "FOLDER", first_line(err))}
     found = json.loads(out)
     table = found if isinstance(found, list) else found.get("rows", found)
-    volatile = ("observed_at", "when", "version", "observed", "message", "text", "tool")
+    volatile = ("observed_at", "when", "version", "observed", "message", "text", "tool", "rules")
     if isinstance(table, list):
         table = [
             {key: value for key, value in row.items() if key not in volatile}
@@ -292,21 +292,26 @@ def mistakes(_: str) -> Any:
     return found
 
 
+COMMAND_TREE = """
+import json, click, typer, capar.cli
+def walk(command, path):
+    names = [name for each in command.params for name in (*each.opts, *each.secondary_opts)]
+    found = {" ".join(path): sorted(name for name in names if name.startswith("--"))}
+    if hasattr(command, "list_commands"):
+        context = click.Context(command)
+        for name in command.list_commands(context):
+            found.update(walk(command.get_command(context, name), [*path, name]))
+    return found
+print(json.dumps(walk(typer.main.get_command(capar.cli.app), [])))
+"""
+
+
 def commands(_: str) -> Any:
     """Every command with the names of its options."""
-    found = {}
-
-    def add(*path: str) -> None:
-        text = run(*path, "--help")[1]
-        found[" ".join(path)] = sorted(set(re.findall(r"(?<![\w-])--[a-z][\w-]*", text)))
-        block = re.split(r"Commands", text)[1:]
-        for part in block:
-            for name in re.findall(r"^[│ ]{1,4}([a-z][\w-]+)  ", part, re.MULTILINE):
-                if len(path) < 2:
-                    add(*path, name)
-
-    add()
-    return found
+    done = subprocess.run(
+        [sys.executable, "-c", COMMAND_TREE], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    return json.loads(done.stdout)
 
 
 def places() -> Iterator[str]:
