@@ -340,11 +340,16 @@ def _read_classes(store: Store, pattern: str) -> tuple[VerbClass, ...]:
     if not nodes:
         return ()
     parts = "|".join(map(str, (CAPAR.classMember, CAPAR.thematicRole, CAPAR.verbFrame)))
+    predicates = f"{CAPAR.verbFrame}/{CAPAR.semanticPredicate}"
+
+    def of(name: str) -> str:
+        return f"VALUES {name} {{ {' '.join(map(str, nodes))} }}"
+
+    # The classes stand in each branch, so that the store begins with them.
     stated = store.ask(
-        f"CONSTRUCT {{ ?s ?p ?o }} {{ GRAPH {graph} {{ "
-        f"VALUES ?class {{ {' '.join(map(str, nodes))} }} "
-        f"{{ BIND(?class AS ?s) }} UNION {{ ?class {parts} ?s }} "
-        f"UNION {{ ?class {CAPAR.verbFrame}/{CAPAR.semanticPredicate} ?s }} ?s ?p ?o }} }}"
+        f"CONSTRUCT {{ ?s ?p ?o }} {{ GRAPH {graph} {{ {{ {of('?s')} ?s ?p ?o }} "
+        f"UNION {{ {of('?class')} ?class {parts} ?s . ?s ?p ?o }} "
+        f"UNION {{ {of('?class')} ?class {predicates} ?s . ?s ?p ?o }} }} }}"
     )
     index = StatementIndex(stated.triples or ())
     return tuple(sorted((_class_of(index, each) for each in nodes), key=lambda each: each.id))
