@@ -364,7 +364,8 @@ def page() -> str:
         "<form action='/query'><textarea name='query' rows='8' cols='80'>"
         "SELECT ?address { ?segment capar:address ?address }</textarea>"
         "<p><button>Ask</button></p></form>"
-        f"<table><tr><th>Question</th><th></th><th>Parameters</th></tr>{''.join(rows)}</table></html>"
+        f"<table><tr><th>Question</th><th></th><th>Parameters</th></tr>{''.join(rows)}</table>"
+        "</html>"
     )
 
 
