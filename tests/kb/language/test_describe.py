@@ -34,7 +34,6 @@ from capar.model.par import FeatureSet
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.pipelines.observation import observe
 from kb.language import Plan, Question, describe, parse
-from kb.language.phrases import Phrasebook
 from kb.language.steps import Narrator
 from kb.language.vocabulary import Vocabulary
 from kb.lexicon.english import noun
@@ -100,7 +99,7 @@ def assert_order_is_true(timed: str) -> None:
 
 def assert_steps_cover_segments(value: Observation) -> None:
     """Every named segment of an object is told by one step, unless it is taking what is given."""
-    steps = Narrator(value, Phrasebook(WORDS)).steps(value.links)
+    steps = Narrator(value, WORDS).steps(value.links)
     told = [key for step in steps for key in step.segments]
     assert len(told) == len(set(told))
     named = {(s.ee, s.index) for s in value.segments if s.objects and s.name != "Receive"}
@@ -247,8 +246,8 @@ def test_two_hands_that_do_the_same_are_told_once_and_others_side_by_side() -> N
         "Two", {"right_hand": pieces, "left_hand": other}, (MUG, BOWL), frames=101, rate_hz=100.0
     )
     assert describe(two) == (
-        "The agent reached for the mug with the right hand and touched it, while the left hand "
-        "reached for the bowl and touched it."
+        "The agent reached for the mug with the right hand and touched it. "
+        "Meanwhile, the agent reached for the bowl with the left hand and touched it."
     )
 
 
