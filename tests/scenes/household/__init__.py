@@ -15,4 +15,4 @@ from scenes.household import (  # noqa: F401
     scenes_tipping,
     scenes_vessels,
 )
-from scenes.household.registry import SCENES as SCENES
+from scenes.household.builders import SCENES as SCENES

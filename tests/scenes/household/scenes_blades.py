@@ -7,11 +7,10 @@ from scenes.hands.performer import Hand
 from scenes.hands.scene import performer
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
-from scenes.household import wares
-from scenes.household.registry import scene
-from scenes.household.wares import HAFT
+from scenes.household import builders
+from scenes.household.builders import HAFT, scene
 from scenes.objects import forms
-from scenes.objects.handling import AHEAD, UP, Grip, begin_with, home_again, seize, travel
+from scenes.objects.builders import AHEAD, UP, Grip, begin_with, home_again, seize, travel
 
 GRIPPED = shapes.gripping_hand(0.05, 0.04)
 """A hand that takes the upper end of an upright spoon."""
@@ -24,7 +23,7 @@ def held_knife(s: Stage, hand: Hand, tip: tuple[float, float], over: float, yaw:
     """
     turn = np.radians(yaw)
     x, y = tip[0] - 0.29 * np.cos(turn), tip[1] - 0.29 * np.sin(turn)
-    knife = s.put("knife", wares.long_knife(), (x, y, s.height + over + 0.022), yaw_deg=yaw)
+    knife = s.put("knife", builders.long_knife(), (x, y, s.height + over + 0.022), yaw_deg=yaw)
     begin_with(hand, knife, HAFT)
     return knife
 
@@ -132,7 +131,7 @@ def cup_stirred_to_and_fro(s: Stage) -> None:
     performer(s, height=0.75, yaw_deg=-140)
     s.table()
     mug = s.put("mug", shapes.vessel(0.055, 0.11, "mug"), (0.5, -0.05))
-    spoon = s.put("spoon", wares.tall_spoon(0.24), (0.5, -0.05, s.height + 0.185))
+    spoon = s.put("spoon", builders.tall_spoon(0.24), (0.5, -0.05, s.height + 0.185))
     right, left = s.right(GRIPPED), s.left()
     right.begin_at(spoon, "+z", up=1.0, fingers=AHEAD)
     right.take(spoon)
@@ -153,7 +152,7 @@ def bowl_on_the_palm_stirred(s: Stage) -> None:
     performer(s, height=0.7, yaw_deg=76, size=1.04)
     s.table()
     dish = s.put("bowl", shapes.vessel(0.1, 0.07, "bowl", 0.012), (0.5, 0.1, s.height + 0.2))
-    spoon = s.put("spoon", wares.tall_spoon(0.26), (0.53, 0.1, s.height + 0.362))
+    spoon = s.put("spoon", builders.tall_spoon(0.26), (0.53, 0.1, s.height + 0.362))
     left, right = s.left(), s.right(GRIPPED)
     left.begin_at(dish, "-z", up=0.0, fingers=AHEAD)
     left.take(dish)
@@ -175,7 +174,7 @@ def ladle_in_a_pot_stirred_and_taken_out(s: Stage) -> None:
     performer(s, height=0.66, yaw_deg=-31, size=0.94, agent="old_man")
     s.table()
     pot = s.put("pot", forms.pot(0.14, 0.13), (0.52, -0.06))
-    tool = s.put("ladle", wares.soup_ladle(), (0.55, -0.06, s.height + 0.006))
+    tool = s.put("ladle", builders.soup_ladle(), (0.55, -0.06, s.height + 0.006))
     right = s.right(shapes.gripping_hand(0.06, 0.04))
     right.idle(0.25)
     seize(right, tool, Grip((-0.02, 0.0, 0.3), UP, AHEAD), 1.2, hold=0.5)
@@ -192,7 +191,7 @@ def spoon_stood_in_a_pot_without_stirring(s: Stage) -> None:
     performer(s, height=0.81, yaw_deg=112)
     s.table()
     pot = s.put("pot", forms.pot(0.1, 0.14), (0.55, 0.12))
-    spoon = s.put("spoon", wares.tall_spoon(0.32), (0.55, 0.12, s.height + 0.226))
+    spoon = s.put("spoon", builders.tall_spoon(0.32), (0.55, 0.12, s.height + 0.226))
     left = s.left(GRIPPED)
     left.begin_at(spoon, "+z", up=1.0, fingers=AHEAD)
     left.take(spoon)

@@ -4,13 +4,10 @@ from scenes.hands import shapes
 from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw, fetch, finish
 from scenes.hands.stage import Stage
-from scenes.household import wares
-from scenes.household.registry import scene
-from scenes.household.wares import plum
+from scenes.household import builders
+from scenes.household.builders import plum, scene
 from scenes.objects import forms
-from scenes.objects.furniture import chest
-from scenes.objects.handling import AHEAD, home_again, paused, seize, travel
-from scenes.objects.things_at_hand import floor, pillar
+from scenes.objects.builders import AHEAD, chest, floor, home_again, paused, pillar, seize, travel
 
 
 def narrow() -> shapes.Form:
@@ -200,7 +197,7 @@ def bucket_uncovered_and_looked_into(s: Stage) -> None:
     """A round lid is lifted off a bucket on the floor, held for two seconds, and put back."""
     performer(s, height=0.45, yaw_deg=44, size=1.0)
     floor(s)
-    pail = wares.bucket(s, (0.45, -0.15, 0.0), height=0.3)
+    pail = builders.bucket(s, (0.45, -0.15, 0.0), height=0.3)
     lid = s.put("lid", forms.round_lid(0.114), (0.45, -0.15, 0.3))
     right = s.right()
     right.idle(0.2)

@@ -5,11 +5,9 @@ from scenes.hands.scene import performer
 from scenes.hands.scenes_place import fetch
 from scenes.hands.stage import Stage, other_names
 from scenes.hands.things import Thing
-from scenes.household.registry import scene
-from scenes.household.wares import tin_box
+from scenes.household.builders import scene, tin_box
 from scenes.objects import forms
-from scenes.objects.handling import home_again, travel
-from scenes.objects.things_at_hand import shelf
+from scenes.objects.builders import home_again, shelf, travel
 
 
 def hand_on(giver: Hand, taker: Hand, thing: Thing, *, far: float, reach_s: float) -> None:

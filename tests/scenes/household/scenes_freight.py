@@ -5,12 +5,10 @@ from scenes.hands.scene import performer
 from scenes.hands.scenes_place import fetch, finish
 from scenes.hands.scenes_two_hands import both_leave, both_reach
 from scenes.hands.stage import Stage
-from scenes.household import wares
-from scenes.household.registry import scene
-from scenes.household.wares import glass, jar, plum, tin_box
+from scenes.household import builders
+from scenes.household.builders import glass, jar, plum, scene, tin_box
 from scenes.objects import forms
-from scenes.objects.handling import AHEAD, UP, home_again, paused, travel
-from scenes.objects.things_at_hand import pillar, shelf
+from scenes.objects.builders import AHEAD, UP, home_again, paused, pillar, shelf, travel
 
 
 @scene
@@ -111,7 +109,7 @@ def pan_with_its_lid(s: Stage) -> None:
     performer(s, height=0.76, yaw_deg=-15, size=0.99)
     s.table(width=0.8)
     hob = pillar(s, "hob", (0.55, 0.75, 0.88), (0.44, 0.44), "hob")
-    pan = s.put("pan", wares.stewpan(), (0.5, 0.0))
+    pan = s.put("pan", builders.stewpan(), (0.5, 0.0))
     lid = s.put("lid", forms.round_lid(0.12), (0.5, 0.0, s.height + 0.11))
     hands = both_reach(s, pan, 1.0, 0.88, 0.0)
     right, left = hands
@@ -186,7 +184,7 @@ def bucket_with_plums_swung_quickly(s: Stage) -> None:
     """A bucket with two plums is carried by the palm at its side at more than a metre a second."""
     performer(s, height=0.6, yaw_deg=-80, size=1.03)
     table = s.table()
-    pail = wares.bucket(s, (0.55, -0.3), height=0.2)
+    pail = builders.bucket(s, (0.55, -0.3), height=0.2)
     fruits = [
         plum(s, (0.55 + x, -0.3, s.height + 0.006), name)
         for name, x in (("ripe_plum", -0.05), ("green_plum", 0.05))

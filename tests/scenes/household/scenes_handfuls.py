@@ -8,10 +8,9 @@ from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw
 from scenes.hands.stage import Stage, other_names
 from scenes.hands.things import Thing
-from scenes.household.registry import scene
-from scenes.objects.handling import AHEAD, LEFTWARD, Grip, home_again, paused, travel
+from scenes.household.builders import scene
+from scenes.objects.builders import AHEAD, LEFTWARD, Grip, home_again, paused, shelf, travel
 from scenes.objects.scenes_several import FINGERS_M, PALM_M, also, hold_both
-from scenes.objects.things_at_hand import shelf
 
 APART_M = FINGERS_M - PALM_M
 """How far two jars that lie along one hand are apart [m]."""

@@ -4,14 +4,21 @@ from scenes.hands import shapes
 from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw
 from scenes.hands.stage import Stage
-from scenes.household.furnishing import flap_cupboard, gate, oven
-from scenes.household.registry import scene
+from scenes.household.builders import flap_cupboard, gate, glass, oven, scene
 from scenes.household.scenes_covers import narrow
-from scenes.household.wares import glass
-from scenes.objects.furniture import cupboard
-from scenes.objects.handling import LEFTWARD, NEAR, Grip, home_again, paused, seize, travel
+from scenes.objects.builders import (
+    LEFTWARD,
+    NEAR,
+    Grip,
+    cupboard,
+    floor,
+    home_again,
+    paused,
+    pillar,
+    seize,
+    travel,
+)
 from scenes.objects.scenes_doors import swing
-from scenes.objects.things_at_hand import floor, pillar
 
 
 @scene

@@ -10,10 +10,8 @@ from scenes.hands.scenes_place import claw, fetch, finish
 from scenes.hands.scenes_two_hands import both_leave, both_reach
 from scenes.hands.stage import Stage, other_names
 from scenes.hands.things import Thing
-from scenes.household.registry import scene
-from scenes.household.wares import glass, jar, tin_box
-from scenes.objects.handling import AHEAD, home_again, paused, travel
-from scenes.objects.things_at_hand import floor, pillar, shelf
+from scenes.household.builders import glass, jar, scene, tin_box
+from scenes.objects.builders import AHEAD, floor, home_again, paused, pillar, shelf, travel
 
 
 def round_a_corner(hand: Hand, thing: Thing, radius: float, duration: float) -> None:

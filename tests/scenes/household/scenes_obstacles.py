@@ -7,13 +7,21 @@ from scenes.hands.paths import about, min_jerk
 from scenes.hands.scene import performer
 from scenes.hands.scenes_two_hands import both_leave
 from scenes.hands.stage import Stage
-from scenes.household import wares
-from scenes.household.registry import scene
+from scenes.household import builders
+from scenes.household.builders import scene, tin_box
 from scenes.household.scenes_covers import narrow
-from scenes.household.wares import tin_box
 from scenes.objects import forms
-from scenes.objects.handling import NEAR, RIGHTWARD, UP, Grip, home_again, seize, travel
-from scenes.objects.things_at_hand import floor, wall
+from scenes.objects.builders import (
+    NEAR,
+    RIGHTWARD,
+    UP,
+    Grip,
+    floor,
+    home_again,
+    seize,
+    travel,
+    wall,
+)
 
 
 @scene
@@ -158,7 +166,7 @@ def bucket_pushed_over_the_floor_at_once(s: Stage) -> None:
     performer(s, height=0.4, yaw_deg=109, size=1.04)
     ground = floor(s)
     pail = s.put("bucket", forms.open_box(0.24, 0.24, 0.34, "bucket"), (0.5, -0.1, 0.0))
-    tin = wares.jar(s, (0.52, -0.08, 0.008), height=0.2)
+    tin = builders.jar(s, (0.52, -0.08, 0.008), height=0.2)
     right = s.right()
     right.idle(0.15)
     right.reach(pail, "-x", 0.8, up=0.75, fingers=UP)

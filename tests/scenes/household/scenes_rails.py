@@ -5,11 +5,9 @@ from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw, finish
 from scenes.hands.shapes import Form, block
 from scenes.hands.stage import Stage
-from scenes.household.furnishing import Rail, dresser, sliding_cupboard
-from scenes.household.registry import scene
+from scenes.household.builders import Rail, dresser, plum, scene, sliding_cupboard, tin_box
 from scenes.household.scenes_covers import narrow
-from scenes.household.wares import plum, tin_box
-from scenes.objects.handling import LEFTWARD, NEAR, UP, Grip, home_again, seize, travel
+from scenes.objects.builders import LEFTWARD, NEAR, UP, Grip, home_again, seize, travel
 
 
 def draw(hand: Hand, rail: Rail, by: float, duration: float) -> None:

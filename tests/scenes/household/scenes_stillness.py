@@ -3,12 +3,10 @@
 from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw, fetch, finish
 from scenes.hands.stage import Stage
-from scenes.household import wares
-from scenes.household.furnishing import dresser, oven, sliding_cupboard
-from scenes.household.registry import scene
-from scenes.household.wares import plum
+from scenes.household import builders
+from scenes.household.builders import dresser, oven, plum, scene, sliding_cupboard
 from scenes.objects import forms
-from scenes.objects.handling import (
+from scenes.objects.builders import (
     AHEAD,
     NEAR,
     RIGHTWARD,
@@ -16,10 +14,12 @@ from scenes.objects.handling import (
     Grip,
     home_again,
     paused,
+    pillar,
     seize,
+    shelf,
     travel,
+    wall,
 )
-from scenes.objects.things_at_hand import pillar, shelf, wall
 
 
 @scene
@@ -57,8 +57,8 @@ def between_two_buckets(s: Stage) -> None:
     """The hand passes between two buckets without a halt and touches neither."""
     performer(s, height=0.7, yaw_deg=64)
     s.table()
-    wares.bucket(s, (0.6, 0.2), name="left_bucket")
-    wares.bucket(s, (0.6, -0.2), name="right_bucket")
+    builders.bucket(s, (0.6, 0.2), name="left_bucket")
+    builders.bucket(s, (0.6, -0.2), name="right_bucket")
     right = s.right(home=(0.2, 0.0, s.height + 0.12))
     right.idle(0.2)
     right.go((0.78, 0.0, s.height + 0.12), 1.4)
@@ -70,7 +70,7 @@ def lean_on_a_counter_and_fetch(s: Stage) -> None:
     """The left hand leans on the table's edge while the right hand moves a plum into a basin."""
     performer(s, height=0.9, yaw_deg=-48, size=1.07, agent="tall_man")
     table = s.table()
-    dish = wares.basin(s, (0.62, 0.1), radius=0.14)
+    dish = builders.basin(s, (0.62, 0.1), radius=0.14)
     fruit = plum(s, (0.48, -0.3))
     left, right = s.left(), s.right(claw())
     left.idle(0.2)
@@ -99,7 +99,7 @@ def palm_on_a_rack_and_on_a_wall(s: Stage) -> None:
     performer(s, height=0.76, yaw_deg=-22)
     behind = wall(s, 0.95)
     rack = s.put(
-        "rack", wares.open_shelves(0.24, 0.4, (0.3, 0.7, 1.1)), (0.55, 0.35, 0.0), tag="fixed"
+        "rack", builders.open_shelves(0.24, 0.4, (0.3, 0.7, 1.1)), (0.55, 0.35, 0.0), tag="fixed"
     )
     right = s.right()
     right.idle(0.2)
@@ -147,7 +147,7 @@ def plum_over_a_basin_and_back(s: Stage) -> None:
     """A plum is held above a basin for two seconds, carried back and put where it was."""
     performer(s, height=0.8, yaw_deg=-134, size=0.97)
     table = s.table()
-    wares.basin(s, (0.62, 0.15))
+    builders.basin(s, (0.62, 0.15))
     fruit = plum(s, (0.5, -0.3))
     right = s.right(claw())
     right.idle(0.2)
@@ -167,7 +167,7 @@ def pot_kept_in_the_air_over_the_hob(s: Stage) -> None:
     """Both hands hold a pan still in the air over a hob from the first frame to the last."""
     performer(s, height=0.7, yaw_deg=31, size=1.01)
     pillar(s, "hob", (0.52, 0.0, 0.8), (0.44, 0.44), "hob")
-    pan = s.put("pan", wares.stewpan(), (0.52, 0.0, 0.98))
+    pan = s.put("pan", builders.stewpan(), (0.52, 0.0, 0.98))
     right, left = s.right(), s.left()
     for hand, side in ((right, "-y"), (left, "+y")):
         hand.begin_at(pan, side, up=0.88, fingers=AHEAD)

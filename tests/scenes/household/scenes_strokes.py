@@ -6,12 +6,20 @@ from scenes.hands.scene import performer
 from scenes.hands.scenes_place import fetch, finish
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
-from scenes.household import wares
-from scenes.household.registry import scene
-from scenes.household.wares import HAFT
+from scenes.household import builders
+from scenes.household.builders import HAFT, scene
 from scenes.objects import forms
-from scenes.objects.handling import AHEAD, UP, begin_with, home_again, seize, travel
-from scenes.objects.things_at_hand import pillar, shelf, wall
+from scenes.objects.builders import (
+    AHEAD,
+    UP,
+    begin_with,
+    home_again,
+    pillar,
+    seize,
+    shelf,
+    travel,
+    wall,
+)
 
 PEG_M = 0.06
 """How far a peg stands out of its board [m]."""
@@ -36,7 +44,7 @@ def peg_hit_three_times(s: Stage) -> None:
     performer(s, height=0.7, yaw_deg=17, size=1.03, agent="carpenter")
     s.table()
     right, peg = s.right(), peg_in_a_board(s, (0.72, -0.12))
-    tool = s.put("mallet", wares.mallet(), (0.445, -0.12, s.height + 0.03 + PEG_M + 0.06 + 0.02))
+    tool = s.put("mallet", builders.mallet(), (0.445, -0.12, s.height + 0.03 + PEG_M + 0.06 + 0.02))
     begin_with(right, tool, HAFT)
     right.hold(0.5, tool)
     travel(right, "Raise", (0.0, 0.0, 0.16), 0.7, tool)
@@ -55,7 +63,7 @@ def gong_struck_with_a_mallet(s: Stage) -> None:
     s.table()
     gong = s.put("gong", shapes.box(0.02, 0.4, 0.4, "gong"), (0.85, 0.1), tag="fixed")
     left = s.left()
-    tool = s.put("mallet", wares.mallet(), (0.85 - 0.01 - 0.3 - 0.04, 0.1, s.height + 0.25))
+    tool = s.put("mallet", builders.mallet(), (0.85 - 0.01 - 0.3 - 0.04, 0.1, s.height + 0.25))
     begin_with(left, tool, HAFT)
     left.hold(0.5, tool)
     travel(left, "Carry", (-0.14, 0.0, 0.0), 0.7, tool)
@@ -70,7 +78,7 @@ def mallet_taken_from_a_bench_and_used(s: Stage) -> None:
     s.table()
     bench = s.put("bench", shapes.box(0.2, 0.1, 0.1, "bench"), (0.6, 0.2), tag="fixed")
     right, peg = s.right(), peg_in_a_board(s, (0.72, -0.25))
-    tool = s.put("mallet", wares.mallet(), (0.48, 0.2, s.height + 0.1 + 0.013))
+    tool = s.put("mallet", builders.mallet(), (0.48, 0.2, s.height + 0.1 + 0.013))
     right.idle(0.2)
     seize(right, tool, HAFT, 1.0, hold=0.4)
     travel(right, "Lift", (0.0, 0.0, 0.22), 0.8, tool)
@@ -110,7 +118,7 @@ def block_raked_near(s: Stage) -> None:
     s.table()
     block = s.put("block", shapes.box(0.1, 0.1, 0.06, "block"), (0.82, -0.1))
     right = s.right()
-    tool = s.put("rake", wares.rake(), (0.87 + 0.06 - 0.385, -0.1, s.height + 0.105))
+    tool = s.put("rake", builders.rake(), (0.87 + 0.06 - 0.385, -0.1, s.height + 0.105))
     begin_with(right, tool, HAFT)
     right.hold(0.5, tool)
     travel(right, "MoveObjTo", (-0.0602, 0.0, 0.0), 0.7, tool, block)
@@ -144,7 +152,7 @@ def dough_pushed_with_a_scraper_at_once(s: Stage) -> None:
     s.table()
     dough = s.put("dough", shapes.box(0.12, 0.14, 0.06, "dough"), (0.62, -0.08))
     right = s.right()
-    tool = s.put("scraper", wares.scraper(), (0.56 - 0.28 - 0.14, -0.08, s.height + 0.07))
+    tool = s.put("scraper", builders.scraper(), (0.56 - 0.28 - 0.14, -0.08, s.height + 0.07))
     begin_with(right, tool, HAFT)
     right.hold(0.4, tool)
     right.move((0.1402, 0.0, 0.0), 0.7, arrive=0.3)
@@ -179,7 +187,7 @@ def shelf_brushed_twice(s: Stage) -> None:
     """A brush on a shelf is taken and goes to and fro aslant, rests, and goes round in circles."""
     performer(s, height=0.6, yaw_deg=30, size=1.06)
     board = shelf(s, (0.62, -0.05, 1.0), size=(0.5, 0.7))
-    tool = s.put("brush", wares.brush(), (0.6, -0.1, 1.0))
+    tool = s.put("brush", builders.brush(), (0.6, -0.1, 1.0))
     right = s.right(home=(0.15, -0.3, 1.15))
     right.idle(0.2)
     fetch(right, tool, "+z", 0.9, 1.0, 0.4)
@@ -220,7 +228,7 @@ def brush_carried_over_a_stool_and_not_used(s: Stage) -> None:
     performer(s, height=0.72, yaw_deg=126)
     s.table(width=0.9)
     stool = pillar(s, "stool", (0.48, 0.75, 0.5), (0.32, 0.36), "stool")
-    tool = s.put("brush", wares.brush(), (0.5, 0.22))
+    tool = s.put("brush", builders.brush(), (0.5, 0.22))
     left = s.left()
     left.idle(0.2)
     fetch(left, tool, "+z", 0.9, 1.0, 0.3)

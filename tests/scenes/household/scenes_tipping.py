@@ -4,11 +4,10 @@ from scenes.hands import shapes
 from scenes.hands.scene import performer
 from scenes.hands.scenes_place import fetch, finish
 from scenes.hands.stage import Stage
-from scenes.household import wares
-from scenes.household.registry import scene
-from scenes.household.wares import glass, jar
+from scenes.household import builders
+from scenes.household.builders import glass, jar, scene
 from scenes.objects import forms
-from scenes.objects.handling import AHEAD, Grip, begin_with, travel
+from scenes.objects.builders import AHEAD, Grip, begin_with, travel
 
 
 @scene
@@ -58,8 +57,8 @@ def bucket_tipped_over_a_basin_by_both(s: Stage) -> None:
     """Both hands tip a bucket forward over a basin and back; they hold it in the air throughout."""
     performer(s, height=0.5, yaw_deg=-79, size=1.05, agent="tall_woman")
     s.table(depth=0.9)
-    wares.basin(s, (0.82, 0.0), radius=0.2)
-    pail = wares.bucket(s, (0.52, 0.0, s.height + 0.22), height=0.22)
+    builders.basin(s, (0.82, 0.0), radius=0.2)
+    pail = builders.bucket(s, (0.52, 0.0, s.height + 0.22), height=0.22)
     right, left = s.right(), s.left()
     for hand, side in ((right, "-y"), (left, "+y")):
         hand.begin_at(pail, side, up=0.5, fingers=AHEAD)
@@ -133,7 +132,7 @@ def jar_turned_about_its_axis_in_the_air(s: Stage) -> None:
     """A jar that is held over a basin is turned by seventy degrees about its upright axis."""
     performer(s, height=0.7, yaw_deg=-3, size=1.04)
     s.table()
-    wares.basin(s, (0.5, -0.05))
+    builders.basin(s, (0.5, -0.05))
     tin = jar(s, (0.5, -0.05, s.height + 0.25), height=0.16)
     right = s.right()
     right.begin_at(tin, "-y", up=0.5, fingers=AHEAD)

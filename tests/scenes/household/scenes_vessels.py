@@ -5,12 +5,10 @@ from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw, fetch, finish
 from scenes.hands.scenes_two_hands import both_leave, both_reach
 from scenes.hands.stage import Stage
-from scenes.household import wares
-from scenes.household.registry import scene
-from scenes.household.wares import jar, plum
+from scenes.household import builders
+from scenes.household.builders import jar, plum, scene
 from scenes.objects import forms
-from scenes.objects.handling import AHEAD, LEFTWARD, home_again, paused, travel
-from scenes.objects.things_at_hand import pillar, shelf
+from scenes.objects.builders import AHEAD, LEFTWARD, home_again, paused, pillar, shelf, travel
 
 
 @scene
@@ -18,9 +16,9 @@ def plum_from_a_bucket_to_a_basin(s: Stage) -> None:
     """A plum is taken straight up out of a bucket and laid in a wide basin, slowly."""
     performer(s, height=0.62, yaw_deg=33, size=0.97)
     s.table()
-    wares.bucket(s, (0.5, -0.28), height=0.08)
+    builders.bucket(s, (0.5, -0.28), height=0.08)
     fruit = plum(s, (0.5, -0.28, s.height + 0.006))
-    basin = wares.basin(s, (0.62, 0.25))
+    basin = builders.basin(s, (0.62, 0.25))
     right = s.right(claw())
     right.idle(0.25)
     fetch(right, fruit, "+z", 1.3, 1.0, 0.5)
@@ -42,8 +40,8 @@ def roll_put_on_its_stand(s: Stage) -> None:
     """A paper roll is brought over a pole and lowered around it onto the foot of the stand."""
     performer(s, height=0.8, yaw_deg=-72)
     s.table()
-    stand = s.put("stand", wares.roll_stand(), (0.6, 0.22), tag="fixed")
-    roll = s.put("roll", wares.paper_roll(), (0.52, -0.28))
+    stand = s.put("stand", builders.roll_stand(), (0.6, 0.22), tag="fixed")
+    roll = s.put("roll", builders.paper_roll(), (0.52, -0.28))
     right = s.right()
     right.idle(0.2)
     fetch(right, roll, "-y", 0.9, 0.5, 0.4)
@@ -56,8 +54,8 @@ def roll_taken_off_its_stand(s: Stage) -> None:
     """The left hand draws a paper roll up from its pole and keeps it in the air."""
     performer(s, height=0.7, yaw_deg=128, size=1.05, agent="tall_woman")
     s.table()
-    s.put("stand", wares.roll_stand(), (0.55, 0.12), tag="fixed")
-    roll = s.put("roll", wares.paper_roll(), (0.55, 0.12, s.height + 0.015))
+    s.put("stand", builders.roll_stand(), (0.55, 0.12), tag="fixed")
+    roll = s.put("roll", builders.paper_roll(), (0.55, 0.12, s.height + 0.015))
     left = s.left()
     left.idle(0.15)
     fetch(left, roll, "+y", 0.8, 0.6, 0.0)
@@ -70,7 +68,9 @@ def book_between_two_books(s: Stage) -> None:
     """A book is lowered into the gap between two others on a rack's lowest board."""
     performer(s, height=0.66, yaw_deg=15)
     s.table()
-    rack = s.put("rack", wares.open_shelves(0.26, 0.4, (0.03,)), (0.6, 0.2, s.height), tag="fixed")
+    rack = s.put(
+        "rack", builders.open_shelves(0.26, 0.4, (0.03,)), (0.6, 0.2, s.height), tag="fixed"
+    )
     for name, y in (("red_book", 0.12), ("blue_book", 0.2)):
         s.put(name, shapes.box(0.16, 0.025, 0.2, "book"), (0.72, y, s.height + 0.03))
     book = s.put("green_book", shapes.box(0.15, 0.03, 0.27, "book"), (0.5, -0.28))
@@ -89,7 +89,7 @@ def spoon_into_a_holder(s: Stage) -> None:
     performer(s, height=0.77, yaw_deg=-160)
     s.table()
     pot = s.put("holder", shapes.vessel(0.03, 0.16, "holder", 0.004), (0.55, 0.1))
-    spoon = s.put("spoon", wares.tall_spoon(), (0.55, -0.18, s.height + 0.224))
+    spoon = s.put("spoon", builders.tall_spoon(), (0.55, -0.18, s.height + 0.224))
     right = s.right(shapes.gripping_hand(0.05, 0.04))
     right.begin_at(spoon, "+z", up=1.0, fingers=AHEAD)
     right.take(spoon)
@@ -143,7 +143,7 @@ def pan_set_in_a_sink(s: Stage) -> None:
     """Both hands take a pan by its lugs and sink it in a large basin, pausing over the opening."""
     performer(s, height=0.86, yaw_deg=60, size=1.06, agent="tall_man")
     s.table()
-    pan = s.put("pan", wares.stewpan(), (0.5, -0.28))
+    pan = s.put("pan", builders.stewpan(), (0.5, -0.28))
     sink = s.put("sink", forms.open_box(0.4, 0.5, 0.045, "sink"), (0.62, 0.3), tag="fixed")
     hands = both_reach(s, pan, 1.0, 0.88, 0.3)
     right, left = hands
@@ -161,7 +161,7 @@ def jar_beside_a_bucket_after_a_stop_above_it(s: Stage) -> None:
     """A jar is held over a bucket for a second and a half, then stood on the table behind it."""
     performer(s, height=0.7, yaw_deg=-118)
     table = s.table()
-    wares.bucket(s, (0.5, 0.0), height=0.16)
+    builders.bucket(s, (0.5, 0.0), height=0.16)
     tin = jar(s, (0.5, 0.36), height=0.14)
     left = s.left()
     left.idle(0.2)
@@ -180,7 +180,7 @@ def jar_beside_a_bucket_after_a_stop_above_it(s: Stage) -> None:
 def jar_off_a_rack_and_into_a_box(s: Stage) -> None:
     """A jar is lifted off a rack's upper board, held, and sunk into a box on a stool."""
     performer(s, height=0.75, yaw_deg=175)
-    s.put("rack", wares.open_shelves(0.24, 0.6, (0.45, 0.9)), (0.55, 0.1, 0.0), tag="fixed")
+    s.put("rack", builders.open_shelves(0.24, 0.6, (0.45, 0.9)), (0.55, 0.1, 0.0), tag="fixed")
     pillar(s, "stool", (0.4, -0.6, 0.42), (0.36, 0.36), "stool")
     box = s.put("box", forms.open_box(0.26, 0.26, 0.1, "box"), (0.4, -0.6, 0.42))
     tin = jar(s, (0.6, -0.1, 0.9), height=0.16)
@@ -217,7 +217,7 @@ def plum_out_of_a_basin_into_a_dish(s: Stage) -> None:
     """The left hand takes a plum out of a basin and puts it into a dish, without any pause."""
     performer(s, height=0.52, yaw_deg=84, size=0.8, agent="child", offset=(2.0, -0.4))
     s.table()
-    wares.basin(s, (0.48, 0.25))
+    builders.basin(s, (0.48, 0.25))
     fruit = plum(s, (0.48, 0.25, s.height + 0.006), radius=0.026)
     dish = s.put("dish", shapes.vessel(0.085, 0.045, "dish"), (0.5, -0.15))
     left = s.left(claw())
@@ -236,7 +236,7 @@ def tin_from_one_box_to_another_on_a_shelf(s: Stage) -> None:
     shelf(s, (0.68, 0.32, s.height + 0.3))
     s.put("low_box", forms.open_box(0.24, 0.24, 0.06, "box"), (0.48, -0.2))
     high = s.put("high_box", forms.open_box(0.28, 0.28, 0.07, "box"), (0.68, 0.32, s.height + 0.3))
-    tin = wares.tin_box(s, (0.48, -0.2, s.height + 0.008), "tin", (0.08, 0.08, 0.12))
+    tin = builders.tin_box(s, (0.48, -0.2, s.height + 0.008), "tin", (0.08, 0.08, 0.12))
     right = s.right()
     right.idle(0.2)
     fetch(right, tin, "+z", 0.9, 1.0, 0.3)

@@ -14,4 +14,4 @@ from scenes.objects import (  # noqa: F401
     scenes_several,
     scenes_surface,
 )
-from scenes.objects.registry import SCENES as SCENES
+from scenes.objects.builders import SCENES as SCENES

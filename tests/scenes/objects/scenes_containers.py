@@ -8,9 +8,18 @@ from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw, fetch, finish
 from scenes.hands.stage import Stage
 from scenes.objects import forms
-from scenes.objects.handling import AHEAD, home_again, paused, travel
-from scenes.objects.registry import scene
-from scenes.objects.things_at_hand import apple, bowl, can, crate, toy
+from scenes.objects.builders import (
+    AHEAD,
+    apple,
+    bowl,
+    can,
+    crate,
+    home_again,
+    paused,
+    scene,
+    toy,
+    travel,
+)
 
 
 @scene

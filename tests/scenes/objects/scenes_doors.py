@@ -4,9 +4,16 @@ from scenes.hands.performer import Hand
 from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw, cup
 from scenes.hands.stage import Stage
-from scenes.objects.furniture import Cupboard, cupboard
-from scenes.objects.handling import LEFTWARD, Grip, home_again, paused, seize
-from scenes.objects.registry import scene
+from scenes.objects.builders import (
+    LEFTWARD,
+    Cupboard,
+    Grip,
+    cupboard,
+    home_again,
+    paused,
+    scene,
+    seize,
+)
 from scenes.objects.scenes_drawers import grip_hand
 
 

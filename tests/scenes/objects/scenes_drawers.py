@@ -6,10 +6,18 @@ from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw
 from scenes.hands.stage import Stage, other_names
 from scenes.hands.things import Thing
-from scenes.objects.furniture import SINK, Cabinet, cabinet
-from scenes.objects.handling import LEFTWARD, home_again, paused, seize, travel
-from scenes.objects.registry import scene
-from scenes.objects.things_at_hand import apple
+from scenes.objects.builders import (
+    LEFTWARD,
+    SINK,
+    Cabinet,
+    apple,
+    cabinet,
+    home_again,
+    paused,
+    scene,
+    seize,
+    travel,
+)
 
 FLOOR_M = 0.008 - SINK
 """Height of a drawer's inner floor over the cabinet's [m]."""

@@ -5,9 +5,18 @@ from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw, cup, fetch, finish
 from scenes.hands.scenes_two_hands import both_leave
 from scenes.hands.stage import Stage, other_names
-from scenes.objects.handling import UP, home_again, paused, travel
-from scenes.objects.registry import scene
-from scenes.objects.things_at_hand import can, floor, pillar, shelf, toy
+from scenes.objects.builders import (
+    UP,
+    can,
+    floor,
+    home_again,
+    paused,
+    pillar,
+    scene,
+    shelf,
+    toy,
+    travel,
+)
 
 
 @scene

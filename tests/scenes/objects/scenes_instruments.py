@@ -9,9 +9,19 @@ from scenes.hands.scenes_place import fetch, finish
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
 from scenes.objects import forms
-from scenes.objects.handling import AHEAD, NEAR, UP, Grip, begin_with, home_again, seize, travel
-from scenes.objects.registry import scene
-from scenes.objects.things_at_hand import floor, toy
+from scenes.objects.builders import (
+    AHEAD,
+    NEAR,
+    UP,
+    Grip,
+    begin_with,
+    floor,
+    home_again,
+    scene,
+    seize,
+    toy,
+    travel,
+)
 
 END = Grip((0.0, 0.0, 0.0), NEAR, UP)
 """The end of a handle that lies along x from its origin."""

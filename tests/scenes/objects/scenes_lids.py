@@ -5,10 +5,17 @@ from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw, fetch, finish
 from scenes.hands.stage import Stage
 from scenes.objects import forms
-from scenes.objects.furniture import chest
-from scenes.objects.handling import home_again, paused, seize, travel
-from scenes.objects.registry import scene
-from scenes.objects.things_at_hand import apple, can, pillar
+from scenes.objects.builders import (
+    apple,
+    can,
+    chest,
+    home_again,
+    paused,
+    pillar,
+    scene,
+    seize,
+    travel,
+)
 
 POT_M = 0.12
 """Height of a pot [m]."""

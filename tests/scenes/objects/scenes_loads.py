@@ -6,10 +6,21 @@ from scenes.hands.scenes_place import fetch, finish
 from scenes.hands.scenes_two_hands import both_leave, both_reach
 from scenes.hands.stage import Stage
 from scenes.objects import forms
-from scenes.objects.handling import NEAR, RIGHTWARD, UP, Grip, home_again, paused, seize, travel
-from scenes.objects.registry import scene
+from scenes.objects.builders import (
+    NEAR,
+    RIGHTWARD,
+    UP,
+    Grip,
+    apple,
+    can,
+    home_again,
+    paused,
+    scene,
+    seize,
+    toy,
+    travel,
+)
 from scenes.objects.scenes_drawers import grip_hand
-from scenes.objects.things_at_hand import apple, can, toy
 
 AHEAD = (1.0, 0.0, 0.0)
 

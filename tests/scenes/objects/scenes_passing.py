@@ -6,8 +6,7 @@ from scenes.hands.scene import performer
 from scenes.hands.stage import Stage, other_names
 from scenes.hands.things import Thing
 from scenes.objects import forms
-from scenes.objects.handling import travel
-from scenes.objects.registry import scene
+from scenes.objects.builders import scene, travel
 
 
 def handed(giver: Hand, taker: Hand, thing: Thing, *, far: float) -> None:

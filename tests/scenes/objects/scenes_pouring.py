@@ -6,8 +6,7 @@ from scenes.hands.scenes_place import fetch, finish
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
 from scenes.objects import forms
-from scenes.objects.handling import AHEAD, Grip, begin_with, travel
-from scenes.objects.registry import scene
+from scenes.objects.builders import AHEAD, Grip, begin_with, scene, travel
 
 RIGHT_SIDE = Grip((0.0, -0.045, 0.07), (0.0, -1.0, 0.0), AHEAD)
 """The right side of a jug."""

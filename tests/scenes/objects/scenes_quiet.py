@@ -4,10 +4,17 @@ from scenes.hands import shapes
 from scenes.hands.scene import performer
 from scenes.hands.stage import Stage
 from scenes.objects import forms
-from scenes.objects.furniture import cabinet
-from scenes.objects.handling import UP, home_again
-from scenes.objects.registry import scene
-from scenes.objects.things_at_hand import apple, crate, pillar, shelf, wall
+from scenes.objects.builders import (
+    UP,
+    apple,
+    cabinet,
+    crate,
+    home_again,
+    pillar,
+    scene,
+    shelf,
+    wall,
+)
 
 
 @scene

@@ -8,8 +8,7 @@ from scenes.hands.scene import performer
 from scenes.hands.scenes_place import claw
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
-from scenes.objects.handling import AHEAD, LEFTWARD, Grip, home_again, travel
-from scenes.objects.registry import scene
+from scenes.objects.builders import AHEAD, LEFTWARD, Grip, home_again, scene, travel
 
 PALM_M, FINGERS_M = -0.01, 0.085
 """Where two cups lie along a hand, from its origin towards its fingers [m]."""

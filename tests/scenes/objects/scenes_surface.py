@@ -5,10 +5,18 @@ from scenes.hands.scene import performer
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
 from scenes.objects import forms
-from scenes.objects.handling import NEAR, RIGHTWARD, UP, Grip, home_again, seize, travel
-from scenes.objects.registry import scene
+from scenes.objects.builders import (
+    NEAR,
+    RIGHTWARD,
+    UP,
+    Grip,
+    home_again,
+    scene,
+    seize,
+    travel,
+    wall,
+)
 from scenes.objects.scenes_drawers import grip_hand
-from scenes.objects.things_at_hand import wall
 
 HANDLE = Grip((-0.08 - forms.HANDLE_M, 0.0, 0.096), NEAR, RIGHTWARD)
 """The handle of a box of sixteen centimetres."""

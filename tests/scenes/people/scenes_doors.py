@@ -3,9 +3,8 @@
 from scenes.hands import shapes
 from scenes.hands.paths import pose
 from scenes.hands.scene import performer
-from scenes.household.furnishing import gate
-from scenes.objects.furniture import cabinet, cupboard
-from scenes.objects.handling import NEAR, UP, Grip, Hinge, seize, travel
+from scenes.household.builders import gate
+from scenes.objects.builders import NEAR, UP, Grip, Hinge, cabinet, cupboard, seize, travel
 from scenes.people.person import person
 from scenes.people.registry import scene
 from scenes.people.stage import PeopleStage
