@@ -1,12 +1,9 @@
 """All batteries of scenes, and all their scenes."""
 
-from functools import cache
-
 from combinations import EVERY as ALL
 
 from scenes.hands import SCENES as HANDS
 from scenes.hands.scene import Scene
-from scenes.hands.stage import Stage
 from scenes.household import SCENES as HOUSEHOLD
 from scenes.objects import SCENES as OBJECTS
 from scenes.people import SCENES as PEOPLE
@@ -34,9 +31,3 @@ EVERY = 1 if ALL else 16
 
 SOME = dict(list(SCENES.items())[::EVERY])
 """The scenes that are looked at for soundness."""
-
-
-@cache
-def performed(scene: Scene) -> Stage:
-    """A scene as it is performed, for tests that only look at it."""
-    return scene.stage()

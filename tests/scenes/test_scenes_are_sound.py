@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from capar.model.capture import TagType
-from scenes.batteries import BATTERIES, SOME, performed
+from scenes.batteries import BATTERIES, SOME
 from scenes.hands.clearance import Placed, gap, moving
 from scenes.hands.performer import Hand
 from scenes.hands.scene import Scene
@@ -141,9 +141,7 @@ def pairs(stage: Stage) -> Iterator[tuple[Hand | Thing, Hand | Thing]]:
 )
 def test_there_are_enough_scenes_and_few_alternatives(name: str, battery: dict[str, Scene]) -> None:
     """At least sixty units in enough scenes, and an alternative for at most one unit in ten."""
-    units = [
-        unit for scene in battery.values() for unit in performed(scene).expectation(100.0).units
-    ]
+    units = [unit for scene in battery.values() for unit in scene.stage.expectation(100.0).units]
     assert len(battery) >= FEWEST.get(name, 60)
     assert len(units) >= 60
     assert sum(bool(unit.alternative) for unit in units) <= len(units) / 10
@@ -175,7 +173,7 @@ def test_steps_cover_the_capture(scene: Scene, rate_hz: float) -> None:
 @each_scene
 def test_the_truth_itself_is_counted_as_right(scene: Scene) -> None:
     """Steps as written score, and steps with a border too late score by their names only."""
-    for unit in performed(scene).expectation(100.0).units:
+    for unit in scene.stage.expectation(100.0).units:
         for steps in filter(None, (unit.steps, unit.alternative)):
             outcome = judged(scene.name, unit, steps)
             assert outcome.named
@@ -199,7 +197,7 @@ def test_same_seed_same_capture(scene: Scene) -> None:
 @each_scene
 def test_hands_are_on_what_they_touch_and_off_what_they_do_not(scene: Scene) -> None:
     """Contact as it is written down is contact of the surfaces."""
-    stage = performed(scene)
+    stage = scene.stage
     for time in moments(stage):
         for hand in stage.hands:
             palm = Placed.at(hand, time)
@@ -215,7 +213,7 @@ def test_hands_are_on_what_they_touch_and_off_what_they_do_not(scene: Scene) -> 
 @each_scene
 def test_nothing_goes_through_anything(scene: Scene) -> None:
     """No two bodies overlap by more than a pressed hand does."""
-    stage = performed(scene)
+    stage = scene.stage
     for time in moments(stage, 0.33):
         bodies: list[Hand | Thing] = [*stage.hands, *stage.things]
         placed = {each.name: Placed.at(each, time) for each in bodies}
@@ -227,7 +225,7 @@ def test_nothing_goes_through_anything(scene: Scene) -> None:
 @each_scene
 def test_nothing_moves_by_itself(scene: Scene) -> None:
     """A thing moves only rigidly with a hand that touches something, or where it is told free."""
-    stage = performed(scene)
+    stage = scene.stage
     times = stage.times(50.0)
     for thing in (each for each in stage.things if each.tag is not TagType.SELF):
         own = thing.body.poses(times)
@@ -253,7 +251,7 @@ def test_nothing_moves_by_itself(scene: Scene) -> None:
 @each_scene
 def test_things_rest_on_something(scene: Scene) -> None:
     """What no hand holds stands on another thing, at the first frame and at the last."""
-    stage = performed(scene)
+    stage = scene.stage
     for time in (0.0, stage.duration_s):
         for thing in (each for each in stage.things if each.tag is TagType.MOBILE):
             others = [each for each in stage.things if each is not thing]
@@ -266,7 +264,7 @@ def test_things_rest_on_something(scene: Scene) -> None:
 @each_scene
 def test_hands_are_not_too_fast(scene: Scene) -> None:
     """Hands and feet move as people's do."""
-    stage = performed(scene)
+    stage = scene.stage
     times = stage.times(100.0)
     for hand in stage.hands:
         places = hand.body.poses(times)[:, :3, 3]
@@ -278,12 +276,12 @@ def test_hands_are_not_too_fast(scene: Scene) -> None:
 @each_scene
 def test_hands_that_meet_touch_and_others_do_not(scene: Scene) -> None:
     """Contact of two limbs as it is written down is contact of their surfaces."""
-    limbs = [each for each in performed(scene).hands if isinstance(each, Limb)]
+    limbs = [each for each in scene.stage.hands if isinstance(each, Limb)]
     for first, second in combinations(limbs, 2):
         met = [(start, end) for other, start, end in first.others if other is second]
         for time in (each for pair in met for each in pair):
             assert gap(Placed.at(first, time), Placed.at(second, time)) <= HELD_M
-        for time in moments(performed(scene)):
+        for time in moments(scene.stage):
             if not any(start - BESIDE_S <= time <= end + BESIDE_S for start, end in met):
                 far = gap(Placed.at(first, time), Placed.at(second, time))
                 assert far >= FREE_M, (first.name, second.name, time)
@@ -292,7 +290,7 @@ def test_hands_that_meet_touch_and_others_do_not(scene: Scene) -> None:
 @each_scene
 def test_a_foot_that_stands_does_not_slide(scene: Scene) -> None:
     """While a foot touches what it stands on, it stays there; its heel may rise."""
-    stage = performed(scene)
+    stage = scene.stage
     for foot in (each for each in stage.hands if each.form.kind == "foot"):
         fixed = (each for each in foot.touches if each[0].tag is TagType.FIXED)
         for _, start, end in fixed:

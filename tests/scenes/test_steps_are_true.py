@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from scenes.batteries import SOME, performed
+from scenes.batteries import SOME
 from scenes.hands.clearance import Placed, gap
 from scenes.hands.expectation import Step
 from scenes.hands.performer import Hand
@@ -95,7 +95,7 @@ def rides(thing: Thing, load: Thing, step: Step) -> bool:
 @each_scene
 def test_a_long_rest_is_a_step_of_its_own(scene: Scene) -> None:
     """No hand rests for 0.4 s within a reach, a return or any other motion."""
-    for hand, step in steps(performed(scene)):
+    for hand, step in steps(scene.stage):
         if step.name not in STILL:
             assert resting(hand, step.start_s, step.end_s) < REST_S, (hand.name, step)
 
@@ -103,7 +103,7 @@ def test_a_long_rest_is_a_step_of_its_own(scene: Scene) -> None:
 @each_scene
 def test_a_hold_is_at_rest(scene: Scene) -> None:
     """A hand that rests, or holds something, stays where it is throughout."""
-    for hand, step in steps(performed(scene)):
+    for hand, step in steps(scene.stage):
         if step.name in STILL:
             still = resting(hand, step.start_s, step.end_s)
             long = still > step.end_s - step.start_s - 0.05
@@ -113,7 +113,7 @@ def test_a_hold_is_at_rest(scene: Scene) -> None:
 @each_scene
 def test_the_last_of_several_objects_is_touched(scene: Scene) -> None:
     """What a step names beside its first object touches that object, or the hand, at its end."""
-    stage = performed(scene)
+    stage = scene.stage
     for hand, step in steps(stage):
         if len(step.objects) > 1 and step.name not in FROM:
             first, *_, last = things_of(stage, step)
@@ -124,7 +124,7 @@ def test_the_last_of_several_objects_is_touched(scene: Scene) -> None:
 @each_scene
 def test_what_is_in_the_air_touches_nothing_but_its_load(scene: Scene) -> None:
     """A thing that was lifted, carried or raised ends off everything that does not ride on it."""
-    stage = performed(scene)
+    stage = scene.stage
     for hand, step in steps(stage):
         if step.name in IN_THE_AIR and len(step.objects) == 1:
             (thing,) = things_of(stage, step)

@@ -10,6 +10,13 @@ from scipy.spatial.transform import Rotation
 
 Poses = Float[np.ndarray, "frames 4 4"]
 Times = Float[np.ndarray, "frames"]
+UP = (0.0, 0.0, 1.0)
+AHEAD = (1.0, 0.0, 0.0)
+NEAR = (-1.0, 0.0, 0.0)
+LEFTWARD = (0.0, 1.0, 0.0)
+RIGHTWARD = (0.0, -1.0, 0.0)
+"""Directions of the stage, as its performer sees them."""
+
 Vector = Sequence[float] | Float[np.ndarray, "3"]
 
 

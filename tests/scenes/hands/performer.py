@@ -61,6 +61,8 @@ class Hand:
     touched: Thing | None = None
     since: float = 0.0
     held: list[Piece] = field(default_factory=list)
+    member: str = "hand"
+    agent: str = ""
 
     @classmethod
     def at_home(cls, name: str, side: str, form: Form, place: Vector) -> "Hand":
@@ -85,8 +87,8 @@ class Hand:
         still = [(self.touched, self.since, self.clock)] if self.touched else []
         return [*self.contacts, *still]
 
-    def step(self, name: str, *objects: Thing) -> None:
-        """Write down that the step under way ends now."""
+    def step(self, name: str, *objects: "Thing | Hand") -> None:
+        """Write down that the step under way, about things or hands, ends now."""
         done = Step(name, tuple(each.name for each in objects), self.border, self.clock)
         self.steps.append(done)
         self.border = self.clock

@@ -2,6 +2,10 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from inspect import signature
+from types import ModuleType
+from typing import Any
 
 from capar.model.capture import Capture
 from scenes.hands.expectation import Expectation
@@ -14,43 +18,43 @@ class Scene:
 
     name: str
     story: str
-    write: Callable[[Stage], None]
+    write: Callable[[Any], None]
+    kind: type[Stage]
 
+    @cached_property
     def stage(self) -> Stage:
-        """The scene as it is performed, before any tracker sees it."""
-        stage = Stage(self.name)
+        """The scene as it is performed, before any tracker sees it; it is performed once."""
+        stage = self.kind(self.name)
         self.write(stage)
+        stage.close()
         return stage
 
     def __call__(
         self, rate_hz: float, noise_m: float, noise_rad: float, seed: int
     ) -> tuple[Capture, Expectation]:
         """What a tracker records, and what each hand did."""
-        stage = self.stage()
+        stage = self.stage
         capture = stage.capture(rate_hz, Noise(noise_m, noise_rad), seed)
         return capture, stage.expectation(rate_hz)
 
 
-SCENES: dict[str, Scene] = {}
-"""Every scene by its name."""
-
-
-def scene(write: Callable[[Stage], None]) -> Scene:
-    """Enter a function that writes a scene into the list; its docstring is the story."""
-    return entered(write, SCENES)
-
-
-def entered(write: Callable[[Stage], None], scenes: dict[str, Scene]) -> Scene:
-    """Enter a function that writes a scene into a battery's list.
+def battery(*modules: ModuleType) -> dict[str, Scene]:
+    """The scenes of modules by their names: each public function of a stage and nothing else.
 
     Raises:
-        ValueError: The battery has a scene of that name already.
+        ValueError: Two scenes have the same name.
     """
-    made = Scene(write.__name__, write.__doc__ or "", write)
-    if made.name in scenes:
-        raise ValueError(f"two scenes are called {made.name}")
-    scenes[made.name] = made
-    return made
+    scenes: dict[str, Scene] = {}
+    for module in modules:
+        for name, write in vars(module).items():
+            if name.startswith("_") or getattr(write, "__module__", "") != module.__name__:
+                continue
+            kinds = [each.annotation for each in signature(write).parameters.values()]
+            if len(kinds) == 1 and isinstance(kinds[0], type) and issubclass(kinds[0], Stage):
+                if name in scenes:
+                    raise ValueError(f"two scenes are called {name}")
+                scenes[name] = Scene(name, write.__doc__ or "", write, kinds[0])
+    return scenes
 
 
 def performer(

@@ -3,18 +3,15 @@
 import numpy as np
 
 from scenes.hands import shapes
-from scenes.hands.paths import facing, pose
+from scenes.hands.paths import AHEAD, UP, facing, pose
 from scenes.hands.performer import GRAVITY, PRESS
-from scenes.hands.scene import performer, scene
+from scenes.hands.scene import performer
 from scenes.hands.stage import Stage
 
-UP = (0.0, 0.0, 1.0)
-AHEAD = (1.0, 0.0, 0.0)
 SLOWING = 3.5
 """Deceleration of a block that slides on a table [m/s2]."""
 
 
-@scene
 def hit_the_table(s: Stage) -> None:
     """The flat hand comes down on the table at more than a metre a second and stays a while."""
     performer(s, yaw_deg=22)
@@ -27,7 +24,6 @@ def hit_the_table(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def hit_a_board(s: Stage) -> None:
     """The left palm hits an upright board."""
     performer(s, height=0.9, yaw_deg=-145, size=1.05)
@@ -41,7 +37,6 @@ def hit_a_board(s: Stage) -> None:
     left.idle(0.2)
 
 
-@scene
 def tap_twice(s: Stage) -> None:
     """The hand slaps the table, rests above it and slaps it again."""
     performer(s, yaw_deg=-100)
@@ -58,7 +53,6 @@ def tap_twice(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def hit_a_block_away(s: Stage) -> None:
     """The palm strikes a block at its side, which slides away over the table."""
     performer(s, yaw_deg=135)
@@ -89,7 +83,6 @@ def palm_up(place: np.ndarray) -> np.ndarray:
     return pose(place, facing(UP, AHEAD))
 
 
-@scene
 def throw_a_bag(s: Stage) -> None:
     """A bean bag on the palm is thrown up and ahead and lands on the table."""
     performer(s, yaw_deg=-5)
@@ -109,7 +102,6 @@ def throw_a_bag(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def throw_and_catch(s: Stage) -> None:
     """The right hand tosses a bean bag, and the left hand catches it and keeps it."""
     performer(s, height=0.8, yaw_deg=220)

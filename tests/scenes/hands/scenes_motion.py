@@ -5,16 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from scenes.hands import shapes
+from scenes.hands.paths import AHEAD, UP
 from scenes.hands.performer import PRESS, Hand
-from scenes.hands.scene import performer, scene
+from scenes.hands.scene import performer
 from scenes.hands.scenes_place import cup, fetch, finish
 from scenes.hands.stage import Stage
 
-UP = (0.0, 0.0, 1.0)
-AHEAD = (1.0, 0.0, 0.0)
 
-
-@scene
 def turn_in_the_air(s: Stage) -> None:
     """A mug is lifted, held, turned by eighty degrees about its upright axis and kept."""
     performer(s, yaw_deg=77)
@@ -31,7 +28,6 @@ def turn_in_the_air(s: Stage) -> None:
     right.hold(0.6, mug)
 
 
-@scene
 def tilt_in_the_air(s: Stage) -> None:
     """A box is lifted, held, tilted by fifty degrees to the left and kept so."""
     performer(s, height=0.82, yaw_deg=-33)
@@ -48,7 +44,6 @@ def tilt_in_the_air(s: Stage) -> None:
     right.hold(0.7, box)
 
 
-@scene
 def pour_into_a_bowl(s: Stage) -> None:
     """A bottle is lifted, tipped over a bowl and back, and put down."""
     performer(s, yaw_deg=-12)
@@ -68,7 +63,6 @@ def pour_into_a_bowl(s: Stage) -> None:
     finish(right, flask, table, 0.3, 0.9)
 
 
-@scene
 def shake_a_bottle(s: Stage) -> None:
     """A bottle is lifted, shaken up and down six times and put back."""
     performer(s, height=0.95, yaw_deg=175, size=1.04)
@@ -87,7 +81,6 @@ def shake_a_bottle(s: Stage) -> None:
     finish(right, flask, table, 0.3, 0.9)
 
 
-@scene
 def stir_in_a_bowl(s: Stage) -> None:
     """A spoon held above a bowl is lowered to its bottom and goes round four times."""
     performer(s, yaw_deg=65)
@@ -106,7 +99,6 @@ def stir_in_a_bowl(s: Stage) -> None:
     right.hold(0.6, spoon, bowl)
 
 
-@scene
 def drink_from_a_mug(s: Stage) -> None:
     """A mug is taken to the mouth, drunk from, and put back on the table."""
     performer(s, height=0.74, yaw_deg=-15)
@@ -116,7 +108,6 @@ def drink_from_a_mug(s: Stage) -> None:
     right.alternative = tuple(steps)
 
 
-@scene
 def drink_quickly(s: Stage) -> None:
     """A tall woman drinks without holding still before she lifts the mug."""
     performer(s, height=0.92, yaw_deg=125, size=1.05, agent="tall_woman")

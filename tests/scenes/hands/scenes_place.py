@@ -2,7 +2,7 @@
 
 from scenes.hands import shapes
 from scenes.hands.performer import Hand
-from scenes.hands.scene import performer, scene
+from scenes.hands.scene import performer
 from scenes.hands.stage import Stage, other_names
 from scenes.hands.things import Thing
 
@@ -38,7 +38,6 @@ def finish(hand: Hand, thing: Thing, goal: Thing, hold: float, duration: float) 
     hand.idle(0.2)
 
 
-@scene
 def place_in_one_sweep(s: Stage) -> None:
     """The right hand takes a mug over to the left side, without any pause."""
     table, mug = s.table(), cup(s, (0.5, -0.3))
@@ -49,7 +48,6 @@ def place_in_one_sweep(s: Stage) -> None:
     finish(right, mug, table, 0.0, 1.0)
 
 
-@scene
 def place_with_holds(s: Stage) -> None:
     """The mug is held for half a second before it is lifted and after it is put down."""
     performer(s, height=0.9, yaw_deg=130, size=1.06, agent="tall_man")
@@ -61,7 +59,6 @@ def place_with_holds(s: Stage) -> None:
     finish(right, mug, table, 0.5, 1.0)
 
 
-@scene
 def place_with_pauses_in_the_air(s: Stage) -> None:
     """The mug is lifted, held, carried, held and lowered."""
     performer(s, yaw_deg=-45)
@@ -80,7 +77,6 @@ def place_with_pauses_in_the_air(s: Stage) -> None:
     finish(right, mug, table, 0.4, 0.9)
 
 
-@scene
 def place_slowly_with_long_pauses(s: Stage) -> None:
     """An old woman pauses for one to two seconds wherever she can."""
     performer(s, height=0.7, yaw_deg=215, size=0.93, agent="old_woman")
@@ -99,7 +95,6 @@ def place_slowly_with_long_pauses(s: Stage) -> None:
     finish(right, mug, table, 1.8, 1.6)
 
 
-@scene
 def child_places_quickly(s: Stage) -> None:
     """A child snatches a block with the left hand and puts it elsewhere on a low table."""
     performer(s, height=0.48, yaw_deg=80, size=0.75, agent="child", offset=(0.5, 3.0))
@@ -111,7 +106,6 @@ def child_places_quickly(s: Stage) -> None:
     finish(left, toy, table, 0.0, 0.6)
 
 
-@scene
 def place_with_the_left_hand(s: Stage) -> None:
     """The left hand takes a bottle from the far to the near right; short holds."""
     performer(s, height=1.05, yaw_deg=-100, size=1.08)
@@ -123,7 +117,6 @@ def place_with_the_left_hand(s: Stage) -> None:
     finish(left, flask, table, 0.3, 1.0)
 
 
-@scene
 def take_from_above(s: Stage) -> None:
     """A block is taken from above, lifted high, carried away from the body and put down."""
     performer(s, yaw_deg=5)
@@ -135,7 +128,6 @@ def take_from_above(s: Stage) -> None:
     finish(right, toy, table, 0.3, 1.0)
 
 
-@scene
 def lift_and_keep(s: Stage) -> None:
     """A mug is lifted and held in the air until the end."""
     performer(s, height=0.76, yaw_deg=260)
@@ -149,7 +141,6 @@ def lift_and_keep(s: Stage) -> None:
     right.hold(1.0, mug)
 
 
-@scene
 def lift_and_put_back(s: Stage) -> None:
     """A box is lifted straight up, held for a second and put back."""
     performer(s, height=0.6, yaw_deg=33)
@@ -165,7 +156,6 @@ def lift_and_put_back(s: Stage) -> None:
     finish(right, box, table, 0.4, 0.8)
 
 
-@scene
 def up_and_down_in_one_arc(s: Stage) -> None:
     """A mug goes up thirty centimetres and down again at once, only eight to the side."""
     performer(s, yaw_deg=-20)
@@ -181,7 +171,6 @@ def up_and_down_in_one_arc(s: Stage) -> None:
     finish(right, mug, table, 0.4, 0.9)
 
 
-@scene
 def flat_arc(s: Stage) -> None:
     """A mug is moved forty centimetres to the side and never rises above three."""
     performer(s, yaw_deg=145)
@@ -195,7 +184,6 @@ def flat_arc(s: Stage) -> None:
     right.alternative = other_names(right, MoveObjTo="PutDown")
 
 
-@scene
 def rounder_arc(s: Stage) -> None:
     """A block is moved forty-five centimetres away in an arc that rises eight."""
     performer(s, height=0.85, yaw_deg=-160)
@@ -209,7 +197,6 @@ def rounder_arc(s: Stage) -> None:
     right.alternative = other_names(right, MoveObjTo="PutDown")
 
 
-@scene
 def put_on_a_shelf(s: Stage) -> None:
     """A mug goes from the table over the edge of a shelf and down on it."""
     performer(s, height=0.7, yaw_deg=15, size=1.05)
@@ -225,7 +212,6 @@ def put_on_a_shelf(s: Stage) -> None:
     finish(right, mug, shelf, 0.4, 1.3)
 
 
-@scene
 def take_from_a_shelf(s: Stage) -> None:
     """A box is taken from a shelf and put on the table, with a pause in the air before it sinks."""
     performer(s, height=0.72, yaw_deg=280)
@@ -246,7 +232,6 @@ def take_from_a_shelf(s: Stage) -> None:
     finish(right, box, table, 0.4, 0.9)
 
 
-@scene
 def stack_on_a_box(s: Stage) -> None:
     """A block is put on top of a box."""
     performer(s, yaw_deg=120)
@@ -260,7 +245,6 @@ def stack_on_a_box(s: Stage) -> None:
     finish(right, toy, box, 0.35, 1.0)
 
 
-@scene
 def take_off_a_box(s: Stage) -> None:
     """A block is taken off a box with the left hand and put on the table."""
     performer(s, height=0.95, yaw_deg=-15, size=1.05)
@@ -274,7 +258,6 @@ def take_off_a_box(s: Stage) -> None:
     finish(left, toy, table, 0.3, 1.0)
 
 
-@scene
 def ball_into_a_carton(s: Stage) -> None:
     """A ball is lowered into an open carton and left there."""
     performer(s, yaw_deg=190)
@@ -288,7 +271,6 @@ def ball_into_a_carton(s: Stage) -> None:
     finish(right, ball, box, 0.4, 1.1)
 
 
-@scene
 def ball_out_of_a_carton(s: Stage) -> None:
     """A ball is taken out of a carton and put on the table."""
     performer(s, height=0.8, yaw_deg=-170)
@@ -302,7 +284,6 @@ def ball_out_of_a_carton(s: Stage) -> None:
     finish(right, ball, table, 0.4, 1.1)
 
 
-@scene
 def ball_into_a_bowl(s: Stage) -> None:
     """A ball is put into a bowl with a pause above the opening."""
     performer(s, yaw_deg=95)
@@ -323,7 +304,6 @@ def ball_into_a_bowl(s: Stage) -> None:
     finish(right, ball, bowl, 0.3, 1.1)
 
 
-@scene
 def put_down_and_lift_again(s: Stage) -> None:
     """A mug is put down, kept in hand for half a second, and carried on to a third place."""
     performer(s, yaw_deg=62)
@@ -337,7 +317,6 @@ def put_down_and_lift_again(s: Stage) -> None:
     finish(right, mug, table, 0.3, 1.1)
 
 
-@scene
 def two_things_one_after_the_other(s: Stage) -> None:
     """First the mug, then, after a rest at home, the block."""
     performer(s, height=0.88, yaw_deg=-80)
@@ -353,7 +332,6 @@ def two_things_one_after_the_other(s: Stage) -> None:
     finish(right, toy, table, 0.3, 1.0)
 
 
-@scene
 def among_other_things(s: Stage) -> None:
     """One of five things is moved; the others stand close by and are not touched."""
     performer(s, yaw_deg=230, offset=(-2.0, 2.0))
@@ -369,7 +347,6 @@ def among_other_things(s: Stage) -> None:
     finish(right, mug, table, 0.3, 1.0)
 
 
-@scene
 def put_down_and_withdraw(s: Stage) -> None:
     """A block is put down, and the hand goes to a place where it never was."""
     performer(s, yaw_deg=-50)
@@ -383,7 +360,6 @@ def put_down_and_withdraw(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def raise_and_lower_in_the_air(s: Stage) -> None:
     """A mug that is held from the first frame is raised, held and lowered again in the air."""
     performer(s, yaw_deg=40)
@@ -401,7 +377,6 @@ def raise_and_lower_in_the_air(s: Stage) -> None:
     right.hold(0.5, mug)
 
 
-@scene
 def carry_in_the_air(s: Stage) -> None:
     """A bottle that is held from the first frame is carried to the left and back."""
     performer(s, height=0.65, yaw_deg=-110)
@@ -419,7 +394,6 @@ def carry_in_the_air(s: Stage) -> None:
     right.hold(0.5, flask)
 
 
-@scene
 def rest_on_the_way_to_a_mug(s: Stage) -> None:
     """The hand rests on its way to a mug, takes it over and goes home."""
     performer(s, height=0.77, yaw_deg=-5, size=0.97)

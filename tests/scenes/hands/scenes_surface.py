@@ -3,17 +3,12 @@
 import numpy as np
 
 from scenes.hands import shapes
-from scenes.hands.paths import min_jerk
-from scenes.hands.scene import performer, scene
+from scenes.hands.paths import LEFTWARD, RIGHTWARD, UP, min_jerk
+from scenes.hands.scene import performer
 from scenes.hands.scenes_place import cup
 from scenes.hands.stage import Stage
 
-UP = (0.0, 0.0, 1.0)
-LEFTWARD = (0.0, 1.0, 0.0)
-RIGHTWARD = (0.0, -1.0, 0.0)
 
-
-@scene
 def push_with_the_palm(s: Stage) -> None:
     """A box is pushed away over the table with the palm behind it."""
     table, box = s.table(), s.put("box", shapes.box(0.15, 0.2, 0.14), (0.5, -0.1))
@@ -29,7 +24,6 @@ def push_with_the_palm(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def push_with_a_fingertip(s: Stage) -> None:
     """A small box is pushed away with one finger, at once on contact, and left there."""
     performer(s, height=0.95, yaw_deg=70)
@@ -45,7 +39,6 @@ def push_with_a_fingertip(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def push_twice_with_a_pause(s: Stage) -> None:
     """A carton is pushed, held for half a second, and pushed on; the hand stays until the end."""
     performer(s, yaw_deg=-135, size=1.06)
@@ -61,7 +54,6 @@ def push_twice_with_a_pause(s: Stage) -> None:
         left.hold(0.5, box, table)
 
 
-@scene
 def push_a_loaded_carton(s: Stage) -> None:
     """A carton with a ball in it is pushed away; the ball goes along."""
     performer(s, height=0.7, yaw_deg=310)
@@ -79,7 +71,6 @@ def push_a_loaded_carton(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def pull_by_a_handle(s: Stage) -> None:
     """A box is drawn towards the performer by the handle on its near side."""
     performer(s, yaw_deg=25)
@@ -96,7 +87,6 @@ def pull_by_a_handle(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def pull_quickly(s: Stage) -> None:
     """The left hand draws a box near without holding still before."""
     performer(s, height=0.82, yaw_deg=-95)
@@ -110,7 +100,6 @@ def pull_quickly(s: Stage) -> None:
     left.hold(0.6, box, table)
 
 
-@scene
 def slide_from_above(s: Stage) -> None:
     """A hand pressed on a book slides it to the left."""
     performer(s, yaw_deg=180)
@@ -127,7 +116,6 @@ def slide_from_above(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def slide_and_stay(s: Stage) -> None:
     """A book is slid away at once on contact; the hand stays on it."""
     performer(s, height=0.6, yaw_deg=-25, size=0.9)
@@ -141,7 +129,6 @@ def slide_and_stay(s: Stage) -> None:
     left.hold(1.0, book, table)
 
 
-@scene
 def slide_twice(s: Stage) -> None:
     """A book is slid to the left and, after a pause, back to the right."""
     performer(s, yaw_deg=105)
@@ -159,7 +146,6 @@ def slide_twice(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def turn_on_the_table(s: Stage) -> None:
     """A mug is turned by seventy degrees where it stands."""
     performer(s, yaw_deg=-70)
@@ -176,7 +162,6 @@ def turn_on_the_table(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def wipe_the_table(s: Stage) -> None:
     """A cloth under the hand goes to and fro on the table three times."""
     performer(s, height=0.8, yaw_deg=50)
@@ -193,7 +178,6 @@ def wipe_the_table(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def wipe_quickly(s: Stage) -> None:
     """The left hand wipes to and fro five times and stays on the cloth."""
     performer(s, height=0.9, yaw_deg=-150, size=1.05)
@@ -208,7 +192,6 @@ def wipe_quickly(s: Stage) -> None:
     left.hold(0.6, cloth, table)
 
 
-@scene
 def roll_a_ball(s: Stage) -> None:
     """A ball rolls away under the palm, which goes twice as far as the ball."""
     performer(s, yaw_deg=-85)
@@ -240,7 +223,6 @@ def roll_a_ball(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def push_with_a_stick(s: Stage) -> None:
     """A stick held in the air is brought to a box, and after a pause pushes it away."""
     performer(s, yaw_deg=12)

@@ -3,15 +3,11 @@
 from dataclasses import replace
 
 from scenes.hands import shapes
-from scenes.hands.scene import performer, scene
+from scenes.hands.paths import LEFTWARD, RIGHTWARD, UP
+from scenes.hands.scene import performer
 from scenes.hands.stage import Stage, other_names
 
-UP = (0.0, 0.0, 1.0)
-LEFTWARD = (0.0, 1.0, 0.0)
-RIGHTWARD = (0.0, -1.0, 0.0)
 
-
-@scene
 def touch_and_stay(s: Stage) -> None:
     """The right hand goes to a box and stays there until the end."""
     s.table()
@@ -22,7 +18,6 @@ def touch_and_stay(s: Stage) -> None:
     right.hold(1.0, box)
 
 
-@scene
 def touch_and_return(s: Stage) -> None:
     """The right hand touches a mug at its side and goes home."""
     performer(s, height=0.9, yaw_deg=35, size=1.06, agent="tall_man")
@@ -36,7 +31,6 @@ def touch_and_return(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def touch_briefly(s: Stage) -> None:
     """A child's left hand touches a box for a quarter of a second."""
     performer(s, height=0.5, yaw_deg=-60, size=0.75, agent="child")
@@ -50,7 +44,6 @@ def touch_briefly(s: Stage) -> None:
     left.idle(0.15)
 
 
-@scene
 def hold_for_long(s: Stage) -> None:
     """The right hand lies on a box for five seconds."""
     performer(s, yaw_deg=150, offset=(2.0, -1.0))
@@ -64,7 +57,6 @@ def hold_for_long(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def touch_the_table(s: Stage) -> None:
     """The right hand is laid on the table and taken home; a mug stands further away."""
     performer(s, height=1.0, yaw_deg=90, size=1.05)
@@ -78,7 +70,6 @@ def touch_the_table(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def press_with_a_fingertip(s: Stage) -> None:
     """A fingertip is put on a box that does not give way."""
     performer(s, yaw_deg=250)
@@ -92,7 +83,6 @@ def press_with_a_fingertip(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def touch_with_both_hands(s: Stage) -> None:
     """Both hands take a box between them, one after the other, and leave it as it is."""
     performer(s, height=0.8, yaw_deg=-120)
@@ -111,7 +101,6 @@ def touch_with_both_hands(s: Stage) -> None:
     left.idle(0.2)
 
 
-@scene
 def touch_two_things_with_a_rest_between(s: Stage) -> None:
     """The hand touches a box, goes home, rests, and touches a bottle."""
     performer(s, yaw_deg=20, offset=(-1.0, 0.5))
@@ -130,7 +119,6 @@ def touch_two_things_with_a_rest_between(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def from_one_thing_to_the_next(s: Stage) -> None:
     """The hand goes from one box straight to another without going home between."""
     performer(s, yaw_deg=-30)
@@ -148,7 +136,6 @@ def from_one_thing_to_the_next(s: Stage) -> None:
     right.alternative = tuple(replace(each, objects=each.objects[:1]) for each in right.steps)
 
 
-@scene
 def halt_on_the_way(s: Stage) -> None:
     """The hand stops in the air for most of a second before it goes on to the mug."""
     performer(s, height=0.72, yaw_deg=75)
@@ -164,7 +151,6 @@ def halt_on_the_way(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def short_halt_on_the_way(s: Stage) -> None:
     """The hand hesitates for a fifth of a second on its way, which parts nothing."""
     performer(s, yaw_deg=200)
@@ -180,7 +166,6 @@ def short_halt_on_the_way(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def halt_on_the_way_back(s: Stage) -> None:
     """After touching a box the hand stops half way, waits, and goes home."""
     performer(s, height=0.85, yaw_deg=300, size=0.95)
@@ -197,7 +182,6 @@ def halt_on_the_way_back(s: Stage) -> None:
     right.alternative = other_names(right, Withdraw="ResumePosture")
 
 
-@scene
 def withdraw_to_another_place(s: Stage) -> None:
     """After touching a box the hand goes far from where it came from, and stays there."""
     performer(s, yaw_deg=10)
@@ -211,7 +195,6 @@ def withdraw_to_another_place(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def wait_before_the_reach(s: Stage) -> None:
     """The hand waits for a second and a half before it does anything."""
     performer(s, yaw_deg=-10)
@@ -225,7 +208,6 @@ def wait_before_the_reach(s: Stage) -> None:
     right.alternative = (replace(first, start_s=0.0), *others)
 
 
-@scene
 def nothing_happens(s: Stage) -> None:
     """Both hands rest in the air in front of a mug and a box for three seconds."""
     performer(s, height=0.7, yaw_deg=45)
@@ -236,7 +218,6 @@ def nothing_happens(s: Stage) -> None:
         hand.rest(3.0)
 
 
-@scene
 def hand_lies_on_the_table(s: Stage) -> None:
     """The hand lies on the table from the first frame to the last."""
     performer(s, yaw_deg=110)
@@ -247,7 +228,6 @@ def hand_lies_on_the_table(s: Stage) -> None:
     right.hold(2.5, table)
 
 
-@scene
 def pass_near_things(s: Stage) -> None:
     """The hand goes past a mug and over a box, five centimetres off, and touches neither."""
     performer(s, yaw_deg=-75)
@@ -260,7 +240,6 @@ def pass_near_things(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def there_and_back_in_the_air(s: Stage) -> None:
     """The left hand is held out in the air for a second and taken back; nothing is touched."""
     performer(s, yaw_deg=170, size=1.05)
@@ -274,7 +253,6 @@ def there_and_back_in_the_air(s: Stage) -> None:
     left.idle(0.2)
 
 
-@scene
 def touch_the_face(s: Stage) -> None:
     """The right hand touches the performer's own face."""
     performer(s, yaw_deg=60)
@@ -288,7 +266,6 @@ def touch_the_face(s: Stage) -> None:
     right.idle(0.2)
 
 
-@scene
 def hand_on_the_chest(s: Stage) -> None:
     """A hand is laid on the performer's own chest and stays there."""
     performer(s, height=0.8, yaw_deg=-140)
@@ -301,7 +278,6 @@ def hand_on_the_chest(s: Stage) -> None:
     right.hold_oneself(1.2, chest)
 
 
-@scene
 def touch_a_shelf(s: Stage) -> None:
     """The left hand touches the front of a shelf above the table."""
     performer(s, height=0.7, yaw_deg=330)

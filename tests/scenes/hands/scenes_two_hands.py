@@ -1,13 +1,12 @@
 """Scenes in which both hands act, together or each on its own."""
 
 from scenes.hands import shapes
+from scenes.hands.paths import UP
 from scenes.hands.performer import Hand
-from scenes.hands.scene import performer, scene
+from scenes.hands.scene import performer
 from scenes.hands.scenes_place import brick, cup, fetch, finish
 from scenes.hands.stage import Stage, other_names
 from scenes.hands.things import Thing
-
-UP = (0.0, 0.0, 1.0)
 
 
 def both_reach(s: Stage, thing: Thing, duration: float, up: float, hold: float) -> list[Hand]:
@@ -28,7 +27,6 @@ def both_leave(hands: list[Hand], duration: float) -> None:
         hand.idle(0.2)
 
 
-@scene
 def lift_a_box_with_both_hands(s: Stage) -> None:
     """A large box is lifted by both hands, held for half a second and put back."""
     performer(s, yaw_deg=30)
@@ -48,7 +46,6 @@ def lift_a_box_with_both_hands(s: Stage) -> None:
     both_leave(hands, 0.9)
 
 
-@scene
 def move_a_box_with_both_hands(s: Stage) -> None:
     """A box is taken to the other end of the table in one sweep, without any hold."""
     performer(s, height=0.85, yaw_deg=-115, size=1.07)
@@ -63,7 +60,6 @@ def move_a_box_with_both_hands(s: Stage) -> None:
     both_leave(hands, 1.0)
 
 
-@scene
 def carry_a_tray_with_cups(s: Stage) -> None:
     """Both hands carry a tray with two cups on it to the left."""
     performer(s, yaw_deg=160)
@@ -83,7 +79,6 @@ def carry_a_tray_with_cups(s: Stage) -> None:
     both_leave(hands, 0.9)
 
 
-@scene
 def carry_a_carton_with_a_ball(s: Stage) -> None:
     """Both hands carry a carton with a ball in it away from the body, pausing in the air."""
     performer(s, height=0.65, yaw_deg=-40, size=0.95)
@@ -107,7 +102,6 @@ def carry_a_carton_with_a_ball(s: Stage) -> None:
     both_leave(hands, 1.0)
 
 
-@scene
 def push_with_both_hands(s: Stage) -> None:
     """A wide box is pushed away by both palms behind it."""
     performer(s, yaw_deg=85)
@@ -128,7 +122,6 @@ def push_with_both_hands(s: Stage) -> None:
     both_leave(hands, 0.9)
 
 
-@scene
 def two_things_at_once(s: Stage) -> None:
     """The right hand moves a mug, and the left a block, at the same time."""
     performer(s, yaw_deg=-65)
@@ -144,7 +137,6 @@ def two_things_at_once(s: Stage) -> None:
     finish(left, toy, table, 0.3, 0.9)
 
 
-@scene
 def steady_a_carton_and_fill_it(s: Stage) -> None:
     """The left hand steadies a carton while the right hand puts a ball into it."""
     performer(s, height=0.78, yaw_deg=210)
@@ -163,7 +155,6 @@ def steady_a_carton_and_fill_it(s: Stage) -> None:
     left.idle(0.2)
 
 
-@scene
 def one_hand_acts_and_one_rests(s: Stage) -> None:
     """The right hand moves a block; the left hand rests in the air all the while."""
     performer(s, height=0.75, yaw_deg=-125)
@@ -176,7 +167,6 @@ def one_hand_acts_and_one_rests(s: Stage) -> None:
     left.rest(right.clock)
 
 
-@scene
 def one_hand_lies_and_one_lifts(s: Stage) -> None:
     """The left hand lies on the table throughout; the right hand lifts a mug and keeps it."""
     performer(s, height=0.74, yaw_deg=140)
@@ -191,7 +181,6 @@ def one_hand_lies_and_one_lifts(s: Stage) -> None:
     left.hold(right.clock, table)
 
 
-@scene
 def push_and_lift_at_once(s: Stage) -> None:
     """The left hand pushes a box away while the right hand takes a mug over to its side."""
     performer(s, yaw_deg=0, size=1.02)
@@ -213,7 +202,6 @@ def push_and_lift_at_once(s: Stage) -> None:
     left.idle(0.2)
 
 
-@scene
 def raise_together(s: Stage) -> None:
     """Both hands hold a box in the air from the first frame, raise it and keep it."""
     performer(s, height=0.7, yaw_deg=55)
@@ -231,14 +219,12 @@ def raise_together(s: Stage) -> None:
     left.part(right, 0)
 
 
-@scene
 def pass_from_right_to_left(s: Stage) -> None:
     """The right hand carries a ball to the left hand, which takes it and puts it down."""
     performer(s, yaw_deg=-55)
     pass_over(s, s.right(), s.left())
 
 
-@scene
 def pass_from_left_to_right(s: Stage) -> None:
     """The left hand carries a ball to the right hand, which takes it and puts it down."""
     performer(s, height=0.9, yaw_deg=100, size=1.06)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from capar.model.capture import Agent, Capture, Sensor, Shape, Stream, TagObject, TagType
+from capar.model.capture import Agent, Capture, Role, Sensor, Shape, Stream, TagObject, TagType
 from scenes.hands import shapes
 from scenes.hands.expectation import Expectation, Step, Unit
 from scenes.hands.paths import Body, Poses, Times, Vector, pose
@@ -32,6 +32,16 @@ class Noise:
 
 
 @dataclass
+class Watcher:
+    """A part of a body that is tracked and does not act: a head, the lower back."""
+
+    body: Body
+    part: str
+    agent: str
+    form: shapes.Form | None = None
+
+
+@dataclass
 class Stage:
     """The scene in its own frame: the performer at the origin, looking along x, z up."""
 
@@ -52,6 +62,12 @@ class Stage:
     contact_minimum_s: float | None = None
     things: list[Thing] = field(default_factory=list)
     hands: list[Hand] = field(default_factory=list)
+    watchers: list["Watcher"] = field(default_factory=list)
+    people: dict[str, float] = field(default_factory=dict)
+    """Stature of everybody by name [m], where it is given."""
+
+    hands_as_objects: bool = False
+    """Whether hands are declared as objects too, as where people touch each other."""
 
     def put(
         self, name: str, form: shapes.Form, at: Vector, *, yaw_deg: float = 0.0, tag: str = "mobile"
@@ -117,34 +133,39 @@ class Stage:
             turned = Rotation.from_matrix(poses[:, :3, :3]).as_quat(scalar_first=True)
             return Stream(times, poses[:, :3, 3], turned)
 
-        sensors = [
-            Sensor(
-                each.name,
-                "hand",
-                each.side,
-                f"{each.side}_arm",
-                stream(each.body, tracked=True),
-                _surface(each.form),
-            )
-            for each in self.hands
-        ]
+        sensors = [_acting(each, stream(each.body, tracked=True)) for each in self.hands]
+        seen = [_attending(each, stream(each.body, tracked=True)) for each in self.watchers]
+        known = {each.name: each for each in (*sensors, *seen)}
         objects = [
             TagObject(
                 each.name,
                 each.tag,
-                stream(each.body, tracked=each.tag is not TagType.FIXED),
-                _surface(each.form),
+                known[each.name].stream
+                if each.name in known
+                else stream(each.body, tracked=each.tag is not TagType.FIXED),
+                surface(each.form),
                 kind=each.form.kind,
+                agent=known[each.name].agent if each.name in known else "",
             )
             for each in self.things
         ]
+        declared = [
+            TagObject(each.name, TagType.SELF, each.stream, each.shape, "hand", agent=each.agent)
+            for each in sensors
+            if self.hands_as_objects and each.end_effector == "hand"
+        ]
+        agents = [Agent(name, measures={"stature": tall}) for name, tall in self.people.items()]
         return Capture(
             self.name,
-            tuple(sensors),
-            tuple(objects),
-            agent=Agent(self.agent),
+            (*sensors, *seen),
+            (*objects, *declared),
+            agent=agents[0] if agents else Agent(self.agent),
+            others=tuple(agents[1:]),
             contact_minimum_s=self.contact_minimum_s,
         )
+
+    def close(self) -> None:
+        """Write down what goes on to the end."""
 
     def expectation(self, rate_hz: float) -> Expectation:
         """What each hand does in it, up to the last frame."""
@@ -158,7 +179,22 @@ class Stage:
         )
 
 
-def _surface(form: shapes.Form) -> Shape:
+def _acting(hand: Hand, stream: Stream) -> Sensor:
+    link = f"{hand.side}_{'arm' if hand.member == 'hand' else 'leg'}"
+    shape = surface(hand.form)
+    return Sensor(hand.name, hand.member, hand.side, link, stream, shape, agent=hand.agent)
+
+
+def _attending(each: Watcher, stream: Stream) -> Sensor:
+    link = {"head": "neck"}.get(each.part, each.part)
+    shape = surface(each.form) if each.form else None
+    return Sensor(
+        each.body.name, each.part, "none", link, stream, shape, Role.ATTENDS, agent=each.agent
+    )
+
+
+def surface(form: shapes.Form) -> Shape:
+    """A form's surface as a capture has it."""
     mesh = form.mesh
     return Shape(np.asarray(mesh.vertices), np.asarray(mesh.faces), description=form.kind)
 

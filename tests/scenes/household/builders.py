@@ -1,15 +1,13 @@
-"""Furniture and household goods of this battery, and the list of its scenes."""
+"""Furniture and household goods of this battery."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
-from scenes.hands.paths import Vector
-from scenes.hands.scene import Scene, entered
+from scenes.hands.paths import NEAR, RIGHTWARD, UP, Vector
 from scenes.hands.shapes import Form, ball, block, box, disc, ring, rod, vessel
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
 from scenes.objects import forms
-from scenes.objects.builders import NEAR, RIGHTWARD, SINK, UP, Cupboard, Grip, Hinge
+from scenes.objects.builders import SINK, Cupboard, Grip, Hinge
 
 LEAF_M = 0.016
 """Thickness of a leaf that slides or falls [m]."""
@@ -266,12 +264,3 @@ def open_shelves(depth: float, width: float, heights: tuple[float, ...]) -> Form
     sides = [block((0.0, low, 0.0), (depth, low + 0.02, top)) for low in (-y - 0.02, y)]
     boards = [block((0.0, -y, high - 0.02), (depth, y, high)) for high in heights]
     return Form("rack", (*sides, *boards))
-
-
-SCENES: dict[str, Scene] = {}
-"""Every scene by its name."""
-
-
-def scene(write: Callable[[Stage], None]) -> Scene:
-    """Enter a function that writes a scene into the list; its docstring is the story."""
-    return entered(write, SCENES)

@@ -1,23 +1,15 @@
-"""Grips, furniture and usual objects of this battery, and the list of its scenes."""
+"""Grips, furniture and usual objects of this battery."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from scenes.hands import shapes
-from scenes.hands.paths import Vector, about, facing, pose
+from scenes.hands.paths import NEAR, RIGHTWARD, UP, Vector, about, facing, pose
 from scenes.hands.performer import EASE, PRESS, Hand
-from scenes.hands.scene import Scene, entered
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
 from scenes.objects import forms
-
-UP = (0.0, 0.0, 1.0)
-AHEAD = (1.0, 0.0, 0.0)
-NEAR = (-1.0, 0.0, 0.0)
-LEFTWARD = (0.0, 1.0, 0.0)
-RIGHTWARD = (0.0, -1.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -252,12 +244,3 @@ def wall(s: Stage, x: float, *, high: float = 0.6) -> Thing:
     """A wall behind the table, its near face at a distance [m]."""
     slab = shapes.Form("wall", (shapes.block((0.0, -1.0, -0.5), (0.1, 1.0, high)),))
     return s.put("wall", slab, (x, 0.0, s.height), tag="fixed")
-
-
-SCENES: dict[str, Scene] = {}
-"""Every scene by its name."""
-
-
-def scene(write: Callable[[Stage], None]) -> Scene:
-    """Enter a function that writes a scene into the list; its docstring is the story."""
-    return entered(write, SCENES)

@@ -4,7 +4,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from scenes.hands.expectation import Step
 from scenes.hands.paths import Body, Poses, Times, about, min_jerk
 from scenes.hands.performer import Hand
 from scenes.hands.shapes import Form, block
@@ -24,8 +23,6 @@ SOLE_M = 0.08
 class Limb(Hand):
     """An acting hand or foot of one of several people."""
 
-    member: str = "hand"
-    agent: str = ""
     beside_s: float = 0.12
     """So long before and after a contact it may be near what it touches [s]."""
 
@@ -34,12 +31,6 @@ class Limb(Hand):
 
     others: list[tuple["Limb", float, float]] = field(default_factory=list)
     """Hands that it touched, from when to when [s]."""
-
-    def step(self, name: str, *objects: "Thing | Limb") -> None:
-        """Write down that the step under way, about things or hands, ends now."""
-        done = Step(name, tuple(each.name for each in objects), self.border, self.clock)
-        self.steps.append(done)
-        self.border = self.clock
 
     def wait(self, until: float, *held: Thing) -> None:
         """Stay until a time [s]; that is a step of its own if it is long."""

@@ -6,10 +6,11 @@ from scipy.spatial.transform import Rotation
 from capar.model.capture import TagType
 from scenes.hands import shapes
 from scenes.hands.paths import Body, Vector, facing, pose
+from scenes.hands.stage import Watcher
 from scenes.hands.things import Thing
 from scenes.people.body import TALL_M, Person, foot_place
 from scenes.people.limbs import Chest, Limb, Rider, foot_form
-from scenes.people.stage import PeopleStage, Watcher
+from scenes.people.stage import PeopleStage
 
 
 def person(

@@ -23,9 +23,10 @@ from capar.model.capture import TagType
 from scenes.hands.clearance import Placed, gap
 from scenes.hands.paths import Body, Poses, Times, pose
 from scenes.hands.shapes import Form, block
+from scenes.hands.stage import Watcher, surface
 from scenes.hands.things import Thing
 from scenes.people.limbs import Limb
-from scenes.people.stage import PeopleStage, Watcher, surface
+from scenes.people.stage import PeopleStage
 
 BESIDE_S = 0.5
 """So long before and after a contact a virtual hand is near what it touches [s]."""

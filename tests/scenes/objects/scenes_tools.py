@@ -3,25 +3,14 @@
 import numpy as np
 
 from scenes.hands import shapes
+from scenes.hands.paths import AHEAD, NEAR, UP
 from scenes.hands.performer import Hand
 from scenes.hands.scene import performer
 from scenes.hands.scenes_place import fetch, finish
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
 from scenes.objects import forms
-from scenes.objects.builders import (
-    AHEAD,
-    NEAR,
-    UP,
-    Grip,
-    begin_with,
-    floor,
-    home_again,
-    scene,
-    seize,
-    toy,
-    travel,
-)
+from scenes.objects.builders import Grip, begin_with, floor, home_again, seize, toy, travel
 
 END = Grip((0.0, 0.0, 0.0), NEAR, UP)
 """The end of a handle that lies along x from its origin."""
@@ -30,7 +19,7 @@ SLOWING = 3.0
 """Deceleration of a puck that slides on a table [m/s2]."""
 
 
-def board_and_nail(s: Stage) -> Thing:
+def _board_and_nail(s: Stage) -> Thing:
     """A nail that stands in a board on the table; both are fast."""
     s.put("board", shapes.box(0.3, 0.3, 0.04, "board"), (0.72, -0.1), tag="fixed")
     return s.put("nail", forms.nail(), (0.72, -0.1, s.height + 0.04), tag="fixed")
@@ -50,24 +39,22 @@ def strike(hand: Hand, tool: Thing, nail: Thing, *, down: float, hold: float) ->
     hand.hold(hold, tool, nail)
 
 
-@scene
 def nail_hit_once(s: Stage) -> None:
     """A hammer that is held in the air is raised and hits a nail once."""
     performer(s, yaw_deg=30)
     s.table()
-    nail, right = board_and_nail(s), s.right()
+    nail, right = _board_and_nail(s), s.right()
     tool = held_hammer(s, right)
     right.hold(0.5, tool)
     travel(right, "Raise", (0.0, 0.0, 0.17), 0.7, tool)
     strike(right, tool, nail, down=0.2, hold=0.8)
 
 
-@scene
 def nail_hit_twice(s: Stage) -> None:
     """A left-handed carpenter hits a nail twice, with half a second on it between."""
     performer(s, height=0.9, yaw_deg=-125, size=1.06, agent="carpenter")
     s.table()
-    nail, left = board_and_nail(s), s.left()
+    nail, left = _board_and_nail(s), s.left()
     tool = held_hammer(s, left)
     left.hold(0.6, tool)
     travel(left, "Raise", (0.0, 0.0, 0.17), 0.7, tool)
@@ -76,12 +63,11 @@ def nail_hit_twice(s: Stage) -> None:
     strike(left, tool, nail, down=0.2, hold=0.6)
 
 
-@scene
 def nail_only_touched_with_a_hammer(s: Stage) -> None:
     """A hammer is lowered gently on a nail and kept there."""
     performer(s, height=0.7, yaw_deg=80)
     s.table()
-    nail, right = board_and_nail(s), s.right()
+    nail, right = _board_and_nail(s), s.right()
     tool = held_hammer(s, right)
     right.hold(0.4, tool)
     travel(right, "Raise", (0.0, 0.0, 0.15), 0.8, tool)
@@ -98,7 +84,6 @@ def loaf_and_knife(s: Stage, hand: Hand) -> tuple[Thing, Thing]:
     return loaf, knife
 
 
-@scene
 def loaf_cut(s: Stage) -> None:
     """A knife is lowered on a loaf, rests there, saws to and fro four times, and stays."""
     performer(s, yaw_deg=-50)
@@ -113,7 +98,6 @@ def loaf_cut(s: Stage) -> None:
     right.hold(0.5, knife, loaf)
 
 
-@scene
 def loaf_cut_quickly(s: Stage) -> None:
     """The left hand saws as soon as the knife is on the loaf, and takes the knife up again."""
     performer(s, height=0.92, yaw_deg=160, size=1.04)
@@ -128,7 +112,6 @@ def loaf_cut_quickly(s: Stage) -> None:
     left.hold(0.5, knife)
 
 
-@scene
 def pot_stirred(s: Stage) -> None:
     """A spoon that stands in a pot in the hand goes round five times, and is taken out."""
     performer(s, height=0.85, yaw_deg=-10)
@@ -148,7 +131,6 @@ def pot_stirred(s: Stage) -> None:
     right.hold(0.6, spoon)
 
 
-@scene
 def pot_stirred_and_steadied(s: Stage) -> None:
     """The left hand stirs quickly while the right hand lies on the pot's side."""
     performer(s, height=0.75, yaw_deg=120, size=0.96)
@@ -168,7 +150,6 @@ def pot_stirred_and_steadied(s: Stage) -> None:
     right.hold(left.clock - right.clock, pot)
 
 
-@scene
 def board_wiped(s: Stage) -> None:
     """A cloth is taken from the table, put on a board and wiped to and fro on it."""
     performer(s, yaw_deg=210)
@@ -185,7 +166,6 @@ def board_wiped(s: Stage) -> None:
     finish(right, cloth, board, 0.4, 1.0)
 
 
-@scene
 def table_wiped_in_circles(s: Stage) -> None:
     """A cloth goes round on the table under the left hand, at once on contact."""
     performer(s, height=0.66, yaw_deg=-35, size=0.9, agent="girl")
@@ -208,7 +188,6 @@ def pointed(s: Stage, hand: Hand, far: float) -> tuple[Thing, Thing]:
     return block, tool
 
 
-@scene
 def block_pushed_with_a_stick(s: Stage) -> None:
     """A stick meets a block and pushes it on without a halt."""
     performer(s, yaw_deg=65)
@@ -224,7 +203,6 @@ def block_pushed_with_a_stick(s: Stage) -> None:
     right.hold(0.7, tool, block)
 
 
-@scene
 def block_touched_with_a_stick(s: Stage) -> None:
     """A stick is brought to a block, kept on it for a second, and drawn back."""
     performer(s, height=0.95, yaw_deg=-155, size=1.07)
@@ -238,7 +216,6 @@ def block_touched_with_a_stick(s: Stage) -> None:
     left.hold(0.5, tool)
 
 
-@scene
 def block_swept_with_a_broom(s: Stage) -> None:
     """A broom held over the floor is brought to a block and, after a pause, sweeps it away."""
     performer(s, height=0.74, yaw_deg=95)
@@ -255,7 +232,6 @@ def block_swept_with_a_broom(s: Stage) -> None:
     right.hold(0.5, tool, block)
 
 
-@scene
 def puck_struck_with_a_stick(s: Stage) -> None:
     """The side of a stick strikes a puck, which slides away over the table."""
     performer(s, yaw_deg=-100)
@@ -279,7 +255,6 @@ def puck_struck_with_a_stick(s: Stage) -> None:
     right.hold(0.9, tool)
 
 
-@scene
 def ladle_from_a_pot_to_a_bowl(s: Stage) -> None:
     """A ladle is taken out of a pot, carried over a bowl, emptied into it and kept there."""
     performer(s, height=0.7, yaw_deg=0, size=1.02)
