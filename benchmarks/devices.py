@@ -36,10 +36,10 @@ import tracked
 from extractors.devices.bird_formats import FORMATS
 from extractors.devices.drivers import find_tracker
 from extractors.devices.fastrak import ITEMS, FastrakSimulator
-from extractors.devices.flock import MOST_HZ, FlockRig, FlockSimulator, line_limit_hz
-from extractors.devices.motionstar import MotionStarSimulator, ServerFaults
+from extractors.devices.flock import MOST_HZ, FlockLayout, FlockRig, FlockSimulator
+from extractors.devices.motionstar import MotionStarSimulator
 from extractors.devices.simulator import Faults, SmoothMotion
-from extractors.devices.tracker import Description, Frame, LiveTracker
+from extractors.devices.tracker import Frame, LiveTracker
 from extractors.devices.vrpn import VrpnSimulator
 
 KEPT = 0.9
@@ -150,7 +150,7 @@ def run_flock(case: Case, seconds: float) -> dict[str, Any]:
     log: list[Any] = []
     lines = case.mode == "lines"
     group = case.sensors > 1 and not lines
-    limit_hz = line_limit_hz(FORMATS[case.form], 1 if lines else case.sensors, 115200, group=group)
+    limit_hz = FlockLayout(FORMATS[case.form], group).limit_hz(1 if lines else case.sensors, 115200)
     rate_hz = int(10.0 * min(MOST_HZ, limit_hz)) / 10.0
     rig = FlockRig(erc=group, line_a_bird=lines)
     faults = Faults(case.lost_share, seed=1)
@@ -167,7 +167,7 @@ def run_flock(case: Case, seconds: float) -> dict[str, Any]:
 
 def run_motionstar(case: Case, seconds: float) -> dict[str, Any]:
     log: list[Any] = []
-    faults = ServerFaults(case.lost_share, seed=1)
+    faults = Faults(case.lost_share, seed=1)
     with MotionStarSimulator(SmoothMotion(case.sensors), faults, log) as simulator:
         options = f"birds={case.sensors}&format={case.form}&transport={case.mode}"
         tracker = find_tracker(f"motionstar:{simulator.place}?{options}&rate={MOST_HZ:g}")
@@ -180,7 +180,7 @@ def run_fastrak(case: Case, seconds: float) -> dict[str, Any]:
     log: list[Any] = []
     encoding, mode = case.mode.split()
     faults = Faults(case.lost_share, seed=1)
-    with FastrakSimulator(SmoothMotion(case.sensors), 115200, faults, log) as simulator:
+    with FastrakSimulator(SmoothMotion(case.sensors), faults, log) as simulator:
         options = f"stations={case.sensors}&format={case.form}&encoding={encoding}&mode={mode}"
         tracker = find_tracker(f"fastrak:{simulator.place}?{options}")
         frames = received(tracker, simulator, case, seconds)
@@ -203,9 +203,9 @@ def run_lsl(case: Case, seconds: float) -> dict[str, Any]:
     """A sender in the same process, at the highest rate of the birds."""
     motion, name = SmoothMotion(case.sensors), f"capar_benchmark_{os.getpid()}"
     with loopback():
-        from extractors.devices.lsl import LslOutlet
+        from lsl_loopback import LslOutlet
 
-        outlet = LslOutlet(name, Description("flock", "", motion.sensors, MOST_HZ))
+        outlet = LslOutlet(name, motion.sensors, MOST_HZ)
         tracker = find_tracker(f"lsl:{name}?timeout=20")
         got: list[Frame] = []
         with tracker:

@@ -18,7 +18,8 @@ from extractors.devices import flock as flock
 from extractors.devices import motionstar as birdnet
 from extractors.devices import vrpn as vrpn
 from extractors.devices.bird_formats import FORMATS, Scaling, pose_of_words
-from extractors.devices.tracker import parse_address
+from extractors.devices.records import RecordParser
+from extractors.devices.tracker import parse_address, take_messages
 
 LONGEST_S = 1.0
 GROWTH_KB = 8192
@@ -31,33 +32,31 @@ TARGETS: dict[str, tuple[bytes, Callable[[bytes], object]]] = {}
 
 def flock_target(name: str, *, group: bool) -> tuple[bytes, Callable[[bytes], object]]:
     form = FORMATS[name]
-    parser = flock.RecordParser(form, addresses=BIRDS if group else None)
-    sample = b"".join(
-        flock.encode_record(WORDS[: form.words], address=each if group else None) for each in BIRDS
-    )
+    layout = flock.FlockLayout(form, group)
+    parser = RecordParser(layout, BIRDS if group else (0,))
+    sample = b"".join(layout.encode(WORDS[: form.words], each) for each in BIRDS)
 
     def take(data: bytes) -> None:
         for record in (*parser.feed(data), *parser.settle()):
-            pose_of_words(record.words, form, Scaling())
+            pose_of_words(record.values, form, Scaling())
 
     return sample, take
 
 
 def fastrak_target(form: str, *, binary: bool) -> tuple[bytes, Callable[[bytes], object]]:
-    parser = fastrak.RecordParser(form, binary=binary)
-    values = (1.0, -20.0, 30.0, 1.0, 0.0, 0.0, 0.0)[: len(fastrak.layout(form))]
-    record = fastrak.StationRecord(2, " ", values)
-    return fastrak.encode_record(record, form, binary=binary) * 4, parser.feed
+    layout = fastrak.FastrakLayout(form, binary)
+    values = (1.0, -20.0, 30.0, 1.0, 0.0, 0.0, 0.0)[: len(fastrak.PLACES[form])]
+    return layout.encode(2, values) * 4, RecordParser(layout, range(1, 5)).feed
 
 
 def vrpn_take(data: bytes) -> None:
-    for message in vrpn.MessageParser().feed(data):
+    for message in take_messages(bytearray(data), vrpn.decode_message):
         vrpn.decode_name(message.payload)
         vrpn.decode_pose(message.payload)
 
 
 def targets() -> dict[str, tuple[bytes, Callable[[bytes], object]]]:
-    pose = vrpn.SensorPose(3, (1.0, 2.0, 3.0), (0.0, 0.0, 0.0, 1.0)).encode()
+    pose = vrpn.encode_pose(3, (1.0, 2.0, 3.0), (0.0, 0.0, 0.0, 1.0))
     name = vrpn.Message(0, 0, 0, -1, vrpn.encode_name("Tracker0")).encode()
     data = birdnet.encode_data(dict.fromkeys(BIRDS, (FORMATS["pos_quat"], WORDS[:7])))
     status = birdnet.SystemStatus(103.3, (0xF0, *[0xE0] * 12)).encode()

@@ -9,10 +9,8 @@ import numpy as np
 from flock_bits import decode, poses_of
 from scipy.spatial.transform import Rotation
 
-from extractors.devices.motionstar import SentPacket
 from extractors.devices.simulator import Sent
 from extractors.devices.tracker import Frame, LiveTracker
-from extractors.devices.vrpn import SentPose
 
 TO_WORLD = Rotation.from_euler("x", 180.0, degrees=True)
 SAME = 1e-6
@@ -120,11 +118,13 @@ def held_by_flock(
     return out
 
 
-def held_by_motionstar(frames: Sequence[Frame], log: Sequence[SentPacket], form: str) -> list[Held]:
+def held_by_motionstar(frames: Sequence[Frame], log: Sequence[Sent], form: str) -> list[Held]:
     """The comparison for packets, whose words are whole."""
     out = []
-    for index in range(len(frames[0].positions)):
-        words = np.array([each.words[index + 2] for each in log], float)
+    sensors = len(frames[0].positions)
+    bodies = np.array([np.frombuffer(each.data, ">i2") for each in log])
+    for index in range(sensors):
+        words = bodies.reshape(len(log), sensors, -1)[:, index, 1:].astype(float)
         truth = in_rows(len(log), *poses_of(words, form, range_inch=144.0))
         out.append(compare(poses(frames, index), truth, [each.intact for each in log]))
     return out
@@ -148,13 +148,13 @@ def held_by_fastrak(
     return out
 
 
-def held_by_vrpn(frames: Sequence[Frame], log: Sequence[SentPose]) -> list[Held]:
+def held_by_vrpn(frames: Sequence[Frame], log: Sequence[Sent]) -> list[Held]:
     """The comparison for a VRPN server's poses."""
     out = []
     for index in range(len(frames[0].positions)):
-        mine = [each.pose for each in log if each.pose.sensor == index]
-        turns = Rotation.from_quat([each.quaternion for each in mine])
-        rows = np.c_[[each.position for each in mine], turns.as_quat(scalar_first=True)]
+        mine = [struct.unpack(">8x7d", each.data) for each in log if each.address == index]
+        turns = Rotation.from_quat([each[3:] for each in mine])
+        rows = np.c_[[each[:3] for each in mine], turns.as_quat(scalar_first=True)]
         out.append(compare(poses(frames, index), signed(rows), [True] * len(mine)))
     return out
 

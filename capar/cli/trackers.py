@@ -184,8 +184,8 @@ def simulate(
     """
     import json as codec
 
-    from extractors.devices.drivers import Wanted, make_simulator
-    from extractors.devices.simulator import CapturedMotion, MotionSource, SmoothMotion
+    from extractors.devices.drivers import make_simulator
+    from extractors.devices.simulator import CapturedMotion, Faults, MotionSource, SmoothMotion
     from extractors.readers.bundle.capture_toml import read_capture
 
     motion: MotionSource = SmoothMotion(sensors)
@@ -193,7 +193,7 @@ def simulate(
     if capture:
         motion = CapturedMotion(read_capture(capture))
         names = f"&names={','.join(motion.sensors)}"
-    simulator, options = make_simulator(kind, Wanted(motion, erc, lost, garbled, port))
+    simulator, options = make_simulator(kind, motion, Faults(lost, garbled), erc=erc, port=port)
     with simulator:
         address = f"{kind}:{simulator.place}?{options}{names}"
         typer.echo(codec.dumps({"address": address}) if json else address)

@@ -9,12 +9,12 @@ whether the wire has the conjugate of the quaternion that takes sensor coordinat
 transmitter's.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
+from scipy.spatial.transform import Rotation
 
 INCH_M = 0.0254
 FULL_SCALE = 32768  # Word of a whole range, half a turn, or one.
@@ -75,134 +75,64 @@ class Scaling:
     full_scale: int = FULL_SCALE
     """32768; some BirdNet servers may divide by 32767."""
 
+    @property
+    def signs(self) -> Quaternion:
+        """Factors between the wire's quaternion w x y z and that of sensor to transmitter."""
+        return np.array([1.0, -1.0, -1.0, -1.0] if self.conjugated else [1.0] * 4)
+
 
 def pose_of_words(
-    words: Sequence[int], form: BirdFormat, scaling: Scaling
+    words: Sequence[float], form: BirdFormat, scaling: Scaling
 ) -> tuple[Vector, Quaternion] | None:
     """Position [m] and orientation (w x y z) of a record, NaN where the format lacks it.
 
     Returns None where the words are no rotation: their norm is far from one.
     """
-    shares = [word / scaling.full_scale for word in words]
-    position, orientation = np.full(3, np.nan), np.full(4, np.nan)
+    shares = np.array(words) / scaling.full_scale
+    position, turned = np.full(3, np.nan), np.full(4, np.nan)
     if form.position:
-        metres = scaling.range_inch * INCH_M
-        position = np.array(shares[:3]) * metres
-        shares = shares[3:]
-    if form.orientation:
-        turned = _TURNS[form.orientation](shares, scaling)
-        if turned is None:
+        position, shares = shares[:3] * scaling.range_inch * INCH_M, shares[3:]
+    if form.orientation == "quaternion":
+        norm = np.linalg.norm(shares)
+        if abs(norm - 1.0) > NORM_TOLERANCE:
             return None
-        orientation = np.array(turned)
-    return to_world(position, orientation)
+        turned = shares / norm * scaling.signs
+    elif form.orientation == "angles":
+        turned = Rotation.from_euler("ZYX", shares * np.pi).as_quat(scalar_first=True)
+    elif form.orientation:
+        matrix = shares.reshape(3, 3)  # the wire has the transpose column by column
+        if (
+            np.abs(matrix @ matrix.T - np.eye(3)).max() > NORM_TOLERANCE
+            or np.linalg.det(matrix) < 0
+        ):
+            return None
+        turned = Rotation.from_matrix(matrix).as_quat(scalar_first=True)
+    return to_world(position, turned)
 
 
 def to_world(position: Vector, orientation: Quaternion) -> tuple[Vector, Quaternion]:
     """A pose in the transmitter's frame, z down, as one with z up: half a turn about x."""
-    (x, y, z), (a, b, c, d) = position.tolist(), orientation.tolist()
-    return np.array([x, -y, -z]), np.array([-b, a, -d, c])
+    a, b, c, d = orientation
+    return position * [1.0, -1.0, -1.0], np.array([-b, a, -d, c])
 
 
 def from_world(position: Vector, orientation: Quaternion) -> tuple[Vector, Quaternion]:
     """The pose in the transmitter's frame, of a quaternion whose scalar is not negative."""
-    (x, y, z), (a, b, c, d) = position.tolist(), orientation.tolist()
-    turned = (b, -a, d, -c) if b >= 0.0 else (-b, a, -d, c)
-    return np.array([x, -y, -z]), np.array(turned)
+    a, b, c, d = orientation
+    return position * [1.0, -1.0, -1.0], np.array([b, -a, d, -c]) * (1.0 if b >= 0.0 else -1.0)
 
 
 def words_of_pose(
     position: Vector, orientation: Quaternion, form: BirdFormat, scaling: Scaling
 ) -> tuple[int, ...]:
     """The words that a bird at a pose sends; positions beyond its range saturate."""
-    shares: list[float] = []
     place, turned = from_world(position, orientation)
-    if form.position:
-        shares += list(place / (scaling.range_inch * INCH_M))
-    w, x, y, z = turned.tolist()
+    shares = [place / (scaling.range_inch * INCH_M)] if form.position else []
     if form.orientation == "quaternion":
-        sign = -1.0 if scaling.conjugated else 1.0
-        shares += [w, sign * x, sign * y, sign * z]
+        shares.append(turned * scaling.signs)
     elif form.orientation:
-        matrix = matrix_of(w, x, y, z)
-        shares += matrix if form.orientation == "matrix" else _angles(matrix)
-    return tuple(_word(each * scaling.full_scale) for each in shares)
-
-
-def matrix_of(w: float, x: float, y: float, z: float) -> list[float]:
-    """The rotation matrix of a unit quaternion, row by row."""
-    return [
-        1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),
-        2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),
-        2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y),
-    ]  # fmt: skip
-
-
-def _angles(matrix: list[float]) -> list[float]:
-    """Azimuth, elevation and roll of a matrix, in half turns."""
-    azimuth = math.atan2(matrix[3], matrix[0])
-    elevation = math.asin(max(-1.0, min(1.0, -matrix[6])))
-    roll = math.atan2(matrix[7], matrix[8])
-    return [each / math.pi for each in (azimuth, elevation, roll)]
-
-
-def _word(value: float) -> int:
-    return max(-FULL_SCALE, min(FULL_SCALE - 1, round(value)))
-
-
-def _of_angles(shares: list[float], _: Scaling) -> tuple[float, ...]:
-    """R = Rz(azimuth) Ry(elevation) Rx(roll), as the product of three half-angle quaternions."""
-    cz, cy, cx = (math.cos(each * math.pi / 2.0) for each in shares)
-    sz, sy, sx = (math.sin(each * math.pi / 2.0) for each in shares)
-    return (
-        cz * cy * cx + sz * sy * sx,
-        cz * cy * sx - sz * sy * cx,
-        cz * sy * cx + sz * cy * sx,
-        sz * cy * cx - cz * sy * sx,
-    )
-
-
-def _of_matrix(shares: list[float], _: Scaling) -> tuple[float, ...] | None:
-    """The wire has the transpose column by column, so its rows are those of R."""
-    rows = [shares[0:3], shares[3:6], shares[6:9]]
-    (a, b, c), (d, e, f), (g, h, i) = rows
-    products = [[sum(p * q for p, q in zip(r, s, strict=True)) for s in rows] for r in rows]
-    off = max(abs(products[j][k] - (j == k)) for j in range(3) for k in range(3))
-    if off > NORM_TOLERANCE or a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0:
-        return None
-    return _quaternion(_orthonormal(rows, products))
-
-
-def _orthonormal(rows: list[list[float]], products: list[list[float]]) -> list[list[float]]:
-    """The nearest rotation, by one step of Newton and Schulz from a matrix that is almost one."""
-    return [
-        [
-            1.5 * rows[j][k] - 0.5 * sum(products[j][m] * rows[m][k] for m in range(3))
-            for k in range(3)
-        ]
-        for j in range(3)
-    ]
-
-
-def _quaternion(rows: list[list[float]]) -> tuple[float, ...]:
-    """The quaternion w x y z of a rotation, from whichever of its parts is largest (Shepperd)."""
-    (a, b, c), (d, e, f), (g, h, i) = rows
-    found = max(
-        ((1.0 + a + e + i), (1.0 + a + e + i, h - f, c - g, d - b)),
-        ((1.0 + a - e - i), (h - f, 1.0 + a - e - i, b + d, c + g)),
-        ((1.0 - a + e - i), (c - g, b + d, 1.0 - a + e - i, f + h)),
-        ((1.0 - a - e + i), (d - b, c + g, f + h, 1.0 - a - e + i)),
-    )[1]
-    norm = math.hypot(*found)
-    return tuple(each / norm for each in found)
-
-
-def _of_quaternion(shares: list[float], scaling: Scaling) -> tuple[float, ...] | None:
-    norm = math.hypot(*shares)
-    if abs(norm - 1.0) > NORM_TOLERANCE:
-        return None
-    sign = -1.0 if scaling.conjugated else 1.0
-    w, x, y, z = (each / norm for each in shares)
-    return w, sign * x, sign * y, sign * z
-
-
-_TURNS = {"angles": _of_angles, "matrix": _of_matrix, "quaternion": _of_quaternion}
+        turn = Rotation.from_quat(turned, scalar_first=True)
+        is_matrix = form.orientation == "matrix"
+        shares.append(turn.as_matrix().ravel() if is_matrix else turn.as_euler("ZYX") / np.pi)
+    words = np.round(np.concatenate(shares) * scaling.full_scale)
+    return tuple(np.clip(words, -FULL_SCALE, FULL_SCALE - 1).astype(int).tolist())

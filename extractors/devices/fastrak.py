@@ -11,363 +11,171 @@ import math
 import struct
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from extractors.devices.bird_formats import Quaternion, Vector, from_world, to_world
-from extractors.devices.lines import BAUDS, BITS, SerialLine
+from extractors.devices.bird_formats import NORM_TOLERANCE, from_world, to_world
+from extractors.devices.lines import BAUDS, BITS
+from extractors.devices.records import SerialPort, SerialTracker, Values
 from extractors.devices.simulator import Faults, MotionSource, Sent, SerialSimulator, SimulatedLine
-from extractors.devices.tracker import (
-    Address,
-    CycleCounter,
-    Description,
-    DeviceLostError,
-    Frame,
-    FrameCollector,
-    LiveTracker,
-    SensorReading,
-)
+from extractors.devices.tracker import Address, Description, DeviceLostError
 
 END = b"\r\n"
 STATIONS = 4
 FIELD = 7  # Characters of a number in an ASCII record.
-MOST_ERRORS = 0x7F
-NORM_TOLERANCE = 0.05
 CM_M = 0.01
+RECORDS_HZ = 120.0  # Records a second of all stations together.
+SETTLE_S = 0.2  # How long the line is left to end what was being sent [s].
 
 ITEMS = {"pos": (2,), "pos_ang": (2, 4), "pos_quat": (2, 11)}
 """Items of the output list by format: 2 position, 4 azimuth elevation roll, 11 quaternion."""
 
-VALUES = {2: 3, 4: 3, 11: 4}  # Numbers of an item.
+PLACES = {"pos": "222", "pos_ang": "222222", "pos_quat": "2224444"}
+"""Decimals of each number of a format: centimetres, then degrees or a quaternion w x y z."""
+
+FORMS = {items: form for form, items in ITEMS.items()}
 
 
-@dataclass(frozen=True, slots=True)
-class StationRecord:
-    """What one station's sensor measured, in centimetres, degrees and quaternions w x y z."""
+@dataclass(frozen=True)
+class FastrakLayout:
+    """A station's record: a header, numbers in ASCII or binary, and CR LF."""
 
-    station: int
-    error: str
-    """The error character; a space where all is well."""
+    form: str
+    binary: bool
 
-    values: tuple[float, ...]
-    stamp_s: float = 0.0
-    """When its first byte arrived [s]."""
+    @property
+    def size(self) -> int:
+        """Bytes of a record."""
+        return 3 + (4 if self.binary else FIELD) * len(PLACES[self.form]) + len(END)
 
-    missed: int = 0
-    """How many records the bytes were of that were dropped since the record before."""
+    def encode(self, station: int, values: Sequence[float]) -> bytes:
+        """The bytes of a record of centimetres, degrees and quaternions w x y z, without error."""
+        head = f"0{station} ".encode("ascii")
+        if self.binary:
+            return head + struct.pack(f"<{len(values)}f", *values) + END
+        fields = zip(values, PLACES[self.form], strict=True)
+        return head + "".join(f"{value:{FIELD}.{n}f}" for value, n in fields).encode() + END
 
-
-def layout(form: str) -> str:
-    """The fields of a format: ``2`` per number of centimetres or degrees, ``4`` of a quaternion."""
-    return "".join(("4" if item == 11 else "2") * VALUES[item] for item in ITEMS[form])
-
-
-def record_size(form: str, *, binary: bool) -> int:
-    """Bytes of a record."""
-    return 3 + (4 if binary else FIELD) * len(layout(form)) + len(END)
-
-
-def encode_record(record: StationRecord, form: str, *, binary: bool) -> bytes:
-    """The bytes of a record."""
-    head = f"0{record.station}{record.error}".encode("ascii")
-    if binary:
-        return head + struct.pack(f"<{len(record.values)}f", *record.values) + END
-    fields = zip(record.values, layout(form), strict=True)
-    return head + "".join(f"{value:{FIELD}.{places}f}" for value, places in fields).encode() + END
-
-
-def decode_record(data: bytes, form: str, *, binary: bool) -> StationRecord | None:
-    """The record that some bytes are; None where they are none."""
-    if len(data) != record_size(form, binary=binary) or not _framed(data):
-        return None
-    body = data[3 : -len(END)]
-    values = _binary(body) if binary else _ascii(body)
-    if values is None or not all(map(math.isfinite, values)):
-        return None
-    if form == "pos_quat" and abs(math.hypot(*values[3:]) - 1.0) > NORM_TOLERANCE:
-        return None
-    return StationRecord(data[1] - ord("0"), chr(data[2]), tuple(values))
-
-
-def _framed(data: bytes) -> bool:
-    """Whether header and end are those of a record."""
-    station = 0 < data[1] - ord("0") <= STATIONS
-    return data[:1] == b"0" and station and 0x20 <= data[2] < MOST_ERRORS and data.endswith(END)
-
-
-def _binary(body: bytes) -> Sequence[float] | None:
-    return struct.unpack(f"<{len(body) // 4}f", body)
-
-
-def _ascii(body: bytes) -> Sequence[float] | None:
-    fields = [body[at : at + FIELD] for at in range(0, len(body), FIELD)]
-    if not all(_DIGITS.issuperset(each) for each in fields):
-        return None
-    try:
-        return [float(each) for each in fields]
-    except ValueError:
-        return None
+    def decode(self, data: bytes, *, ended: bool = False) -> tuple[int, Values] | int | None:
+        """Station and numbers, as of ``Layout``."""
+        data = data[: self.size]
+        if len(data) < self.size:
+            return None
+        station, body = data[1] - ord("0"), data[3 : -len(END)]
+        framed = data[:1] == b"0" and 0x20 <= data[2] < 0x7F and data.endswith(END)
+        if not framed or not 0 < station <= STATIONS:
+            return 1
+        if self.binary:
+            values = struct.unpack(f"<{len(body) // 4}f", body)
+        elif _DIGITS.issuperset(body):
+            try:
+                values = tuple(float(body[at : at + FIELD]) for at in range(0, len(body), FIELD))
+            except ValueError:
+                return 1
+        else:
+            return 1
+        wild = self.form == "pos_quat" and abs(math.hypot(*values[3:]) - 1.0) > NORM_TOLERANCE
+        return 1 if wild or not all(map(math.isfinite, values)) else (station, values)
 
 
 _DIGITS = frozenset(b"0123456789+-. ")
 
 
-class RecordParser:
-    """Finds the records in a stream of bytes that may have lost some.
-
-    Args:
-        form: The format that was asked for.
-        binary: Whether records are binary.
-        byte_s: Time of a byte on the line, for time stamps [s].
-    """
-
-    def __init__(self, form: str, *, binary: bool, byte_s: float = 0.0) -> None:
-        self.dropped_bytes = 0
-        self._form = form
-        self._is_binary = binary
-        self._size = record_size(form, binary=binary)
-        self._byte_s = byte_s
-        self._buffer = bytearray()
-        self._stamp_s = 0.0
-        self._dropped = 0
-
-    def feed(self, data: bytes, at_s: float = 0.0) -> list[StationRecord]:
-        """The records that some bytes complete, the last of which arrived at a moment [s]."""
-        held = len(self._buffer)
-        self._buffer += data
-        total, at, out = len(self._buffer), 0, []
-        while total - at >= self._size:
-            record = decode_record(
-                bytes(self._buffer[at : at + self._size]), self._form, binary=self._is_binary
-            )
-            if record is None:
-                at += 1
-                self.dropped_bytes += 1
-                self._dropped += 1
-                continue
-            stamp_s = self._stamp_s if at < held else at_s - (total - 1 - at) * self._byte_s
-            missed = -(-self._dropped // self._size)
-            self._dropped = 0
-            out.append(replace(record, stamp_s=stamp_s, missed=missed))
-            at += self._size
-        if at >= held:
-            self._stamp_s = at_s - (total - 1 - at) * self._byte_s
-        del self._buffer[:at]
-        return out
-
-    def clear(self) -> None:
-        """Forget what was begun."""
-        self._buffer.clear()
-        self._dropped = 0
-
-
-RECORDS_HZ = 120.0  # Records a second of all stations together.
-SETTLE_S = 0.2  # How long the line is left to end what was being sent [s].
-SILENCE_S = 2.0
-ANSWER_S = 1.0  # How long the answer to a poll may pause [s].
-
-
-@dataclass(frozen=True)
-class FastrakSettings:
-    """Stations, format and line."""
-
-    port: str
-    names: tuple[str, ...]
-    form: str
-    binary: bool
-    baud: int
-    stream: bool
-
-    @property
-    def rate_hz(self) -> float:
-        """Frames a second: the stations share the device's rate."""
-        return RECORDS_HZ / len(self.names)
-
-
-def fastrak_settings(address: Address) -> FastrakSettings:
-    """The settings that an address holds.
-
-    Raises:
-        CaparError: An option is unknown or out of bounds, or the line is too slow.
-    """
-    stations = address.integer("stations", 1, low=1, high=STATIONS)
-    settings = FastrakSettings(
-        port=address.place,
-        names=address.names(f"station{index + 1}" for index in range(stations)),
-        form=address.choice("format", ITEMS, "pos_quat"),
-        binary=address.choice("encoding", ("binary", "ascii"), "binary") == "binary",
-        baud=int(address.choice("baud", map(str, BAUDS), "115200")),
-        stream=address.choice("mode", ("stream", "point"), "stream") == "stream",
-    )
-    address.close()
-    size = record_size(settings.form, binary=settings.binary)
-    if RECORDS_HZ * size > settings.baud / BITS and settings.stream:
-        raise address.error(
-            f"{RECORDS_HZ:g} records of {size} bytes are {RECORDS_HZ * size:.0f} bytes a second; "
-            f"{settings.baud} baud carry {settings.baud / BITS:.0f}. Raise the baud rate, choose "
-            "encoding=binary, or poll with mode=point."
-        )
-    return settings
-
-
-class FastrakTracker(LiveTracker):
+class FastrakTracker(SerialTracker):
     """A Fastrak.
 
     Args:
         address: Like ``fastrak:/dev/ttyUSB0?stations=4&encoding=binary``.
 
     Raises:
-        CaparError: The address holds what no Fastrak can be set to.
+        CaparError: The address holds what no Fastrak can be set to, or the line is too slow.
     """
 
     def __init__(self, address: Address) -> None:
-        super().__init__()
-        self._settings = fastrak_settings(address)
-        self._line = SerialLine(self._settings.port, self._settings.baud)
-        self._start()
-
-    def _start(self) -> None:
-        settings = self._settings
-        self._parser = RecordParser(
-            settings.form, binary=settings.binary, byte_s=BITS / settings.baud
-        )
-        self._frames = FrameCollector(len(settings.names), self.counts, counted=settings.stream)
-        self._cycles = CycleCounter(len(settings.names))
-        self._cycle = -1
-        self._next_poll_s = time.monotonic()
+        stations = address.integer("stations", 1, low=1, high=STATIONS)
+        self._names = address.names(f"station{index + 1}" for index in range(stations))
+        self._form = address.choice("format", ITEMS, "pos_quat")
+        self._encoding = address.choice("encoding", ("binary", "ascii"), "binary")
+        self._baud = int(address.choice("baud", map(str, BAUDS), "115200"))
+        self._stream = address.choice("mode", ("stream", "point"), "stream") == "stream"
+        address.close()
+        self._layout = FastrakLayout(self._form, self._encoding == "binary")
+        self._path = address.place
+        size = self._layout.size
+        if RECORDS_HZ * size > self._baud / BITS and self._stream:
+            raise address.error(
+                f"{RECORDS_HZ:g} records of {size} bytes are {RECORDS_HZ * size:.0f} bytes a "
+                f"second; {self._baud} baud carry {self._baud / BITS:.0f}. Raise the baud rate, "
+                "choose encoding=binary, or poll with mode=point."
+            )
+        super().__init__(stations, RECORDS_HZ / stations, b"" if self._stream else b"P")
 
     def describe(self) -> Description:
         """The stations, and how they were configured to send."""
-        settings = self._settings
         return Description(
             kind="fastrak",
             model="Fastrak",
-            sensors=settings.names,
-            rate_hz=settings.rate_hz,
-            has_orientations=settings.form != "pos",
-            details={"encoding": "binary" if settings.binary else "ascii"},
+            sensors=self._names,
+            rate_hz=self._hz,
+            has_orientations=self._form != "pos",
+            details={"encoding": self._encoding},
         )
 
     def _connect(self) -> None:
-        self._line.open()
-        self._line.write(b"c")
+        stations = range(1, self._sensors + 1)
+        self._ports = [SerialPort(self._path, self._baud, self._layout, stations)]
+        line = self._ports[0].line
+        line.open()
+        line.write(b"c")
         time.sleep(SETTLE_S)
-        items = ",".join(str(each) for each in (*ITEMS[self._settings.form], 1))
-        for station in range(1, len(self._settings.names) + 1):
-            self._line.write(f"O{station},{items}\r".encode())
-        self._line.write(b"u" + (b"f" if self._settings.binary else b"F"))
+        items = ",".join(str(each) for each in (*ITEMS[self._form], 1))
+        for station in stations:
+            line.write(f"O{station},{items}\r".encode())
+        line.write(b"u" + (b"f" if self._layout.binary else b"F"))
         time.sleep(SETTLE_S)
-        self._line.drop_input()
-        self._start()
-        if self._settings.stream:
-            self._line.write(b"C")
-
-    def _disconnect(self) -> None:
-        self._take_counts()
-        self._line.close()
+        line.drop_input()
+        self._begin()
+        if self._stream:
+            line.write(b"C")
 
     def _stop(self) -> None:
-        try:
-            self._line.write(b"c")
-        except DeviceLostError:
-            return
+        with suppress(DeviceLostError):
+            self._ports[0].line.write(b"c")
 
-    def _take_counts(self) -> None:
-        self.counts.dropped_bytes += self._parser.dropped_bytes
-        self._parser.dropped_bytes = 0
-
-    def _read(self, timeout_s: float) -> list[Frame]:
-        since_s, before = time.monotonic(), self.counts.records
-        out = self._streamed(timeout_s) if self._settings.stream else self._polled(timeout_s)
-        self._take_counts()
-        self._listened(since_s, SILENCE_S, heard=self.counts.records > before)
-        return out
-
-    def _streamed(self, timeout_s: float) -> list[Frame]:
-        data = self._line.read(timeout_s)
-        return [
-            frame
-            for record in self._parser.feed(data, time.monotonic())
-            for frame in self._add(record)
-        ]
-
-    def _polled(self, timeout_s: float) -> list[Frame]:
-        """One set of records, if its time comes before the wait is over."""
-        time.sleep(max(0.0, min(timeout_s, self._next_poll_s - time.monotonic())))
-        now = time.monotonic()
-        if now < self._next_poll_s:
-            return []
-        period_s = 1.0 / self._settings.rate_hz
-        self._next_poll_s = max(self._next_poll_s + period_s, now - period_s)
-        self._parser.clear()
-        self._cycle += 1
-        self._line.write(b"P")
-        out: list[Frame] = []
-        count = 0
-        while count < len(self._settings.names) and (data := self._line.read(ANSWER_S)):
-            for record in self._parser.feed(data, time.monotonic()):
-                count += 1
-                out += self._add(record)
-        return [*out, *self._frames.flush()]
-
-    def _add(self, record: StationRecord) -> list[Frame]:
-        """The frames that a record completes: stations come in order, so a lower one is next."""
-        index = record.station - 1
-        if index >= len(self._settings.names):
-            self.counts.refused_records += 1
-            return []
-        if self._settings.stream:
-            self._cycle = self._cycles.cycle_of(index, missed=record.missed)
-        pose = pose_of_record(record, self._settings.form)
-        return self._frames.add(self._cycle, SensorReading(index, record.stamp_s, *pose))
+    def _pose(self, values: Values) -> tuple[np.ndarray, np.ndarray]:
+        turned = np.full(4, np.nan)
+        if self._form == "pos_quat":
+            turned = np.array(values[3:]) / math.hypot(*values[3:])
+        elif self._form == "pos_ang":
+            angles = Rotation.from_euler("ZYX", values[3:], degrees=True)
+            turned = angles.as_quat(scalar_first=True)
+        return to_world(np.array(values[:3]) * CM_M, turned)
 
 
-def pose_of_record(record: StationRecord, form: str) -> tuple[Vector, Quaternion]:
-    """Position [m] and orientation (w x y z), z up; NaN where the format has none."""
-    position = np.array(record.values[:3]) * CM_M
-    turned = np.full(4, np.nan)
-    if form == "pos_quat":
-        quaternion = np.array(record.values[3:])
-        turned = quaternion / np.linalg.norm(quaternion)
-    elif form == "pos_ang":
-        angles = Rotation.from_euler("ZYX", record.values[3:], degrees=True)
-        turned = angles.as_quat(scalar_first=True)
-    return to_world(position, turned)
-
-
-FORMS = {items: form for form, items in ITEMS.items()}
-INCH_CM = 2.54
-
-
-class FastrakSimulator(SerialSimulator):
+class FastrakSimulator(SerialSimulator[SimulatedLine]):
     """A Fastrak with one station a sensor of the motion, at most four.
 
     Args:
         motion: What is measured.
-        baud: Speed of the line.
-        faults: What goes wrong on it.
+        faults: What goes wrong on its line.
         log: Where every record is kept, if anywhere.
     """
 
     def __init__(
-        self,
-        motion: MotionSource,
-        baud: int = 115200,
-        faults: Faults | None = None,
-        log: list[Sent] | None = None,
+        self, motion: MotionSource, faults: Faults | None = None, log: list[Sent] | None = None
     ) -> None:
-        stations = min(STATIONS, len(motion.sensors))
-        self._faults = faults or Faults()
-        super().__init__(motion, RECORDS_HZ / stations, [SimulatedLine(baud, self._faults)], log)
-        self._stations = range(1, stations + 1)
+        self._stations = range(1, min(STATIONS, len(motion.sensors)) + 1)
+        line = SimulatedLine(faults or Faults())
+        super().__init__(motion, RECORDS_HZ / len(self._stations), [line], log)
         self._power_up()
 
     def _power_up(self) -> None:
         self._forms = dict.fromkeys(self._stations, "pos_ang")
         self._binary = self._streaming = False
-        self._unit_cm = INCH_CM
+        self._unit_cm = 2.54
 
     def _listen(self, line: SimulatedLine) -> None:
         """Obey every command that is whole: one letter, or a letter and a list up to the return."""
@@ -379,21 +187,18 @@ class FastrakSimulator(SerialSimulator):
                 return
             command = bytes(line.commands[:size])
             del line.commands[:size]
-            self._obey(line, code, command)
-
-    def _obey(self, line: SimulatedLine, code: str, command: bytes) -> None:
-        if code == "P":
-            line.poll_at_s = time.monotonic() + self._faults.reply_delay_s
-        elif code in "Cc":
-            self._streaming = code == "C"
-            if not self._streaming:
-                line.forget()
-        elif code in "Ff":
-            self._binary = code == "f"
-        elif code in "Uu":
-            self._unit_cm = 1.0 if code == "u" else INCH_CM
-        elif code == "O":
-            self._choose(command)
+            if code == "P":
+                line.poll_at_s = time.monotonic() + self._faults.reply_delay_s
+            elif code in "Cc":
+                self._streaming = code == "C"
+                if not self._streaming:
+                    line.forget()
+            elif code in "Ff":
+                self._binary = code == "f"
+            elif code in "Uu":
+                self._unit_cm = 1.0 if code == "u" else 2.54
+            elif code == "O":
+                self._choose(command)
 
     def _choose(self, command: bytes) -> None:
         """An output list: a station, and items of which the last one ends the record."""
@@ -410,17 +215,13 @@ class FastrakSimulator(SerialSimulator):
             self._stream(self._lines[0], at_s, 1.0 / self._rate_hz)
 
     def _report(self, line: SimulatedLine, at_s: float) -> None:
-        """The records of all stations at a time."""
-        positions, orientations = self._poses(at_s)
-        for station in self._stations:
-            form = self._forms[station]
-            position, turned = from_world(positions[station - 1], orientations[station - 1])
-            values = list(position / CM_M / self._unit_cm)
+        for station, *pose in zip(self._stations, *self._poses(at_s), strict=False):
+            position, turned = from_world(*pose)
+            values, form = list(position / CM_M / self._unit_cm), self._forms[station]
             if form == "pos_quat":
                 values += list(turned)
             elif form == "pos_ang":
                 turn = Rotation.from_quat(turned, scalar_first=True)
                 values += list(turn.as_euler("ZYX", degrees=True))
-            record = StationRecord(station, " ", tuple(values))
-            data = encode_record(record, form, binary=self._binary)
+            data = FastrakLayout(form, self._binary).encode(station, values)
             self._sent(station, data, intact=line.send(data, at_s))

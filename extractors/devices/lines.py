@@ -4,7 +4,7 @@ import select
 import socket
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 import serial
 from serial.tools.list_ports import comports
@@ -23,17 +23,22 @@ RECEIVED = 1 << 20
 """Bytes of datagrams that may wait while this computer is busy, as far as its system allows."""
 
 
-def _failures() -> tuple[type[Exception], ...]:
-    """What a port raises when its device is gone, or cannot be set as it should."""
-    usual: tuple[type[Exception], ...] = (OSError, serial.SerialException, ValueError, TypeError)
+FAILURES: tuple[type[Exception], ...] = (OSError, ValueError, TypeError)
+"""What a port raises when its device is gone, or cannot be set as it should."""
+
+with suppress(ImportError):  # only Unix has it; its error is none of the others
+    import termios
+
+    FAILURES += (termios.error,)
+
+
+@contextmanager
+def _present(name: str) -> Iterator[None]:
+    """Report that the device of this name is gone."""
     try:
-        import termios
-    except ImportError:  # pragma: no cover
-        return usual
-    return (*usual, termios.error)  # which is neither of the others
-
-
-FAILURES = _failures()
+        yield
+    except FAILURES as error:
+        raise DeviceLostError(f"{name} is gone ({error})") from None
 
 
 class SerialLine:
@@ -54,13 +59,6 @@ class SerialLine:
         # To open a port asserts RTS unless it is cleared before, which resets a Flock of Birds.
         self._port.rts = False
 
-    @contextmanager
-    def _present(self) -> Iterator[None]:
-        try:
-            yield
-        except FAILURES as error:
-            raise DeviceLostError(f"{self._name} is gone ({error})") from None
-
     def open(self) -> None:
         """Open the port; what it had received before is dropped.
 
@@ -77,7 +75,7 @@ class SerialLine:
 
     def read(self, timeout_s: float) -> bytes:
         """What has arrived, after at most a wait for the first byte [s]."""
-        with self._present():
+        with _present(self._name):
             self._port.timeout = max(0.0, timeout_s)
             return self._port.read(self._port.in_waiting or 1)
 
@@ -90,12 +88,12 @@ class SerialLine:
 
     def write(self, data: bytes) -> None:
         """Send bytes."""
-        with self._present():
+        with _present(self._name):
             self._port.write(data)
 
     def drop_input(self) -> None:
         """Forget what has arrived."""
-        with self._present():
+        with _present(self._name):
             self._port.reset_input_buffer()
 
     def reset_device(self) -> bool:
@@ -110,10 +108,8 @@ class SerialLine:
 
     def close(self) -> None:
         """Let go of the port, whatever state it is in."""
-        try:
+        with suppress(*FAILURES):
             self._port.close()
-        except FAILURES:
-            return
 
 
 def find_ports() -> dict[str, str]:
@@ -163,23 +159,18 @@ class NetworkLine:
 
     def read(self, timeout_s: float) -> bytes:
         """What has arrived, or one datagram, after at most a wait [s]; empty if nothing has."""
-        opened = self._opened()
-        try:
-            if not select.select([opened], [], [], max(0.0, timeout_s))[0]:
+        with _present(self._where):
+            if not select.select([self._opened()], [], [], max(0.0, timeout_s))[0]:
                 return b""
-            data = opened.recv(LARGEST)
-        except (OSError, ValueError) as error:
-            raise DeviceLostError(f"{self._where} is gone ({error})") from None
+            data = self._opened().recv(LARGEST)
         if not data and self._is_stream:
             raise DeviceLostError(f"{self._where} has closed the connection")
         return data
 
     def write(self, data: bytes) -> None:
         """Send bytes."""
-        try:
+        with _present(self._where):
             self._opened().sendall(data)
-        except OSError as error:
-            raise DeviceLostError(f"{self._where} is gone ({error})") from None
 
     def close(self) -> None:
         """Let go of the connection."""

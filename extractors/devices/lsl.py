@@ -18,7 +18,6 @@ PARTS = (
     "PositionX", "PositionY", "PositionZ",
     "OrientationA", "OrientationB", "OrientationC", "OrientationD",
 )  # fmt: skip
-STREAM_TYPE = "MoCap"
 MARKER_TYPE = "Markers"
 BUFFER_S = 60  # Seconds of samples that are kept while nobody polls.
 LAST_S = 0.5
@@ -152,50 +151,6 @@ class LslTracker(LiveTracker):
         poses[bad] = np.nan
         turned = poses[:, 3:] / np.where(bad, 1.0, norms)[:, None]
         return Frame(stamp_s + self._offset_s, stamp_s, poses[:, :3], turned)
-
-
-class LslOutlet:
-    """Sends frames into the network, as ``LslTracker`` reads them.
-
-    Args:
-        name: The stream's name.
-        description: Sensors and rate of what is sent.
-
-    Raises:
-        DeviceError: The library is missing.
-    """
-
-    def __init__(self, name: str, description: Description) -> None:
-        self._lsl = _pylsl()
-        rate_hz = description.rate_hz if np.isfinite(description.rate_hz) else 0.0
-        info = self._lsl.StreamInfo(
-            name, STREAM_TYPE, len(PARTS) * len(description.sensors), rate_hz,
-            self._lsl.cf_double64, f"capar-{name}",
-        )  # fmt: skip
-        channels = info.desc().append_child("channels")
-        for sensor in description.sensors:
-            for part in PARTS:
-                channel = channels.append_child("channel")
-                channel.append_child_value("label", f"{sensor}_{part}")
-                channel.append_child_value("object", sensor)
-                channel.append_child_value("type", part)
-                unit = "meters" if part.startswith("Position") else "quaternion"
-                channel.append_child_value("unit", unit)
-        self._outlet: Any = self._lsl.StreamOutlet(info)
-
-    def push(self, frame: Frame) -> None:
-        """Send a frame, with the time at which it arrived here."""
-        values = np.hstack([frame.positions, frame.orientations]).ravel()
-        stamp_s = frame.host_s + _ahead_s(self._lsl)
-        self._outlet.push_sample(values.tolist(), stamp_s)
-
-    def has_listeners(self) -> bool:
-        """Whether anybody receives it."""
-        return bool(self._outlet.have_consumers())
-
-    def close(self) -> None:
-        """End the stream."""
-        self._outlet = None
 
 
 class LslMarkers:

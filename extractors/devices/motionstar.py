@@ -35,7 +35,7 @@ from extractors.devices.flock import (
     error_text,
 )
 from extractors.devices.lines import NetworkLine
-from extractors.devices.simulator import MotionSource, ServerSimulator
+from extractors.devices.simulator import Faults, MotionSource, Sent, ServerSimulator
 from extractors.devices.tracker import (
     Address,
     Description,
@@ -44,6 +44,7 @@ from extractors.devices.tracker import (
     LiveTracker,
     SensorReading,
     frame_of,
+    take_messages,
 )
 
 PROTOCOL = 3
@@ -63,18 +64,15 @@ class Kind(IntEnum):
     UNKNOWN = 50
     GET_STATUS = 101
     SEND_SETUP = 102
-    SINGLE_SHOT = 103
     RUN_CONTINUOUS = 104
     STOP_DATA = 105
-    SEND_DATA = 106
     DATA = 210
 
 
 RESPONSES = {
-    kind: kind + (10 if kind < Kind.ILLEGAL else 100)
-    for kind in Kind
-    if kind < Kind.ILLEGAL or Kind.UNKNOWN < kind < Kind.DATA
-}
+    Kind.WAKE_UP: 20, Kind.SHUT_DOWN: 21, Kind.GET_STATUS: 201, Kind.SEND_SETUP: 202,
+    Kind.RUN_CONTINUOUS: 204, Kind.STOP_DATA: 205,
+}  # fmt: skip
 """The type of the response to each command."""
 
 
@@ -104,11 +102,6 @@ class Packet:
             PROTOCOL, self.error, self.error_extension, len(self.body),
         )  # fmt: skip
         return head + self.body
-
-    @property
-    def stamp_s(self) -> float:
-        """The server's time [s], if the header's milliseconds belong to its seconds."""
-        return self.seconds + self.milliseconds / 1000.0
 
 
 def decode_packet(data: bytes | bytearray) -> tuple[Packet, int] | None:
@@ -243,25 +236,17 @@ def decode_data(body: bytes) -> dict[int, tuple[BirdFormat, tuple[int, ...]]]:
     out: dict[int, tuple[BirdFormat, tuple[int, ...]]] = {}
     at = 0
     while at < len(body):
-        if at + 2 > len(body):
+        head = body[at : at + 2]
+        if len(head) < 2:
             raise PacketError("data end within a bird's head")
-        address, code = body[at], body[at + 1]
-        form = form_of(code >> 4, code & 0x0F)
-        at += 2
-        end = at + 2 * form.words
-        if end + 2 * bool(address & BUTTONS) > len(body):
-            raise PacketError(f"data end within bird {address & 0x7F}")
-        if address & 0x7F in out:
-            raise PacketError(f"bird {address & 0x7F} stands twice in a packet")
-        out[address & 0x7F] = form, struct.unpack(f">{form.words}h", body[at:end])
-        at = end + 2 * bool(address & BUTTONS)
+        form, bird = form_of(head[1] >> 4, head[1] & 0x0F), head[0] & 0x7F
+        start, at = at + 2, at + 2 + 2 * form.words + 2 * bool(head[0] & BUTTONS)
+        if at > len(body):
+            raise PacketError(f"data end within bird {bird}")
+        if bird in out:
+            raise PacketError(f"bird {bird} stands twice in a packet")
+        out[bird] = form, struct.unpack_from(f">{form.words}h", body, start)
     return out
-
-
-def reply(command: Packet, *, body: bytes = b"") -> Packet:
-    """The response to a command: its sequence number and address, and the type that answers it."""
-    kind = RESPONSES.get(Kind(command.kind), Kind.UNKNOWN)
-    return Packet(kind, command.sequence, command.xtype, body)
 
 
 _BY_CODE = {each.code: each for each in FORMATS.values()}
@@ -332,14 +317,6 @@ class MotionStarTracker(LiveTracker):
         self._ask(Kind.STOP_DATA, needed=False)
         self._ask(Kind.WAKE_UP)
         status = decode_system_status(self._ask(Kind.GET_STATUS).body)
-        self._take_birds(status)
-        self._ask(Kind.SEND_SETUP, body=replace(status, rate_hz=self._rate_hz).encode())
-        for bird in self._birds:
-            self._set_up(bird)
-        self._ask(Kind.RUN_CONTINUOUS)
-
-    def _take_birds(self, status: SystemStatus) -> None:
-        """The birds that are there, as many as the address says."""
         if status.error:
             raise self._address.error(error_text(status.error))
         if len(status.birds) != self._count:
@@ -349,6 +326,10 @@ class MotionStarTracker(LiveTracker):
             )
         self._birds = status.birds
         self._details = {"revision": str(status.revision), "addresses": str(list(status.birds))}
+        self._ask(Kind.SEND_SETUP, body=replace(status, rate_hz=self._rate_hz).encode())
+        for bird in self._birds:
+            self._set_up(bird)
+        self._ask(Kind.RUN_CONTINUOUS)
 
     def _set_up(self, bird: int) -> None:
         """Format and hemisphere of a bird, whose range the server says."""
@@ -387,13 +368,12 @@ class MotionStarTracker(LiveTracker):
         """The packets that come within a wait."""
         data = self._line.read(timeout_s)
         out: list[Packet] = []
+        if not self._is_stream:
+            self._buffer.clear()
+        self._buffer += data
         try:
-            if not self._is_stream:
-                self._buffer.clear()
-            self._buffer += data
-            while (found := decode_packet(self._buffer)) is not None:
-                out.append(found[0])
-                del self._buffer[: found[1]]
+            for packet in take_messages(self._buffer, decode_packet):
+                out.append(packet)  # kept, where a later one is damaged
         except PacketError as error:
             self.counts.dropped_bytes += len(self._buffer)
             if self._is_stream:
@@ -439,8 +419,9 @@ class MotionStarTracker(LiveTracker):
             if pose is None:
                 self.counts.refused_records += 1
                 continue
-            index = self._birds.index(address)
-            readings.append(SensorReading(index, now, *pose, packet.stamp_s))
+            # if the header's milliseconds belong to its seconds
+            stamp_s = packet.seconds + packet.milliseconds / 1000.0
+            readings.append(SensorReading(self._birds.index(address), now, *pose, stamp_s))
         self.counts.records += len(readings)
         self.counts.lost_records += self._count - len(readings)
         return [frame_of(readings, self._count, cycle=self._cycle)] if readings else []
@@ -464,30 +445,6 @@ RANGE_INCH = 144.0
 RATE_HZ = 103.3
 
 
-@dataclass(frozen=True)
-class ServerFaults:
-    """What goes wrong with what the server sends."""
-
-    lost_share: float = 0.0
-    """Share of the data packets that are lost."""
-
-    numbered: bool = True
-    """Whether data packets have sequence numbers of their own."""
-
-    error: int = 0
-    """Error code that it reports."""
-
-    seed: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class SentPacket:
-    """The words of a data packet, by the birds' addresses."""
-
-    words: dict[int, tuple[int, ...]]
-    intact: bool
-
-
 class MotionStarSimulator(ServerSimulator):
     """A server with a controller as unit 1, and one bird a sensor of the motion from 2 on.
 
@@ -501,13 +458,11 @@ class MotionStarSimulator(ServerSimulator):
     def __init__(
         self,
         motion: MotionSource,
-        faults: ServerFaults | None = None,
-        log: list[SentPacket] | None = None,
+        faults: Faults | None = None,
+        log: list[Sent] | None = None,
         port: int = 0,
     ) -> None:
-        super().__init__(motion, RATE_HZ, port)
-        self._faults = faults or ServerFaults()
-        self._log = log
+        super().__init__(motion, RATE_HZ, faults or Faults(), log, port)
         self._random = random.Random(self._faults.seed)
         self._birds = tuple(range(2, 2 + len(motion.sensors)))
         self._datagrams: socket.socket | None = None
@@ -557,9 +512,8 @@ class MotionStarSimulator(ServerSimulator):
 
     def _obey_all(self, buffer: bytearray) -> None:
         with suppress(PacketError):
-            while (found := decode_packet(buffer)) is not None:
-                del buffer[: found[1]]
-                self._send(self._obey(found[0]))
+            for packet in take_messages(buffer, decode_packet):
+                self._send(self._obey(packet))
 
     def _send(self, packet: Packet) -> None:
         if self._peer is not None and self._datagrams is not None:
@@ -569,20 +523,26 @@ class MotionStarSimulator(ServerSimulator):
             self._put(packet.encode())
 
     def _obey(self, packet: Packet) -> Packet:
-        """The response to a command."""
+        """The response to a command: its sequence number and address, and the type it answers."""
         known = packet.xtype == 0 or packet.xtype in self._setups
         if packet.kind not in RESPONSES or not known:
             return Packet(Kind.UNKNOWN, packet.sequence, packet.xtype)
+        body = b""
         if packet.kind == Kind.GET_STATUS:
-            return reply(packet, body=self._status(packet.xtype))
-        if packet.kind == Kind.SEND_SETUP:
-            return self._set_up(packet)
-        if packet.kind in (Kind.RUN_CONTINUOUS, Kind.STOP_DATA, Kind.SHUT_DOWN):
+            body = self._status(packet.xtype)
+        elif packet.kind == Kind.SEND_SETUP:
+            try:
+                if packet.xtype == 0:
+                    self._rate_hz = decode_system_status(packet.body).rate_hz or RATE_HZ
+                else:
+                    setup = decode_bird_status(packet.body)
+                    self._setups[packet.xtype] = replace(setup, range_inch=RANGE_INCH)
+            except PacketError:
+                return Packet(Kind.ILLEGAL, packet.sequence, packet.xtype)
+        elif packet.kind != Kind.WAKE_UP:
             self._sending = packet.kind == Kind.RUN_CONTINUOUS
             self._sequence = packet.sequence
-        if packet.kind == Kind.SINGLE_SHOT:
-            return reply(packet, body=self._body(self._words(time.monotonic())))
-        return reply(packet)
+        return Packet(RESPONSES[Kind(packet.kind)], packet.sequence, packet.xtype, body)
 
     def _status(self, bird: int) -> bytes:
         if bird:
@@ -594,37 +554,19 @@ class MotionStarSimulator(ServerSimulator):
         flags = 0x0C | 0x80 * self._sending | 0x40 * bool(self._faults.error)
         return SystemStatus(self._rate_hz, units, 1, flags, self._faults.error).encode()
 
-    def _set_up(self, packet: Packet) -> Packet:
-        try:
-            if packet.xtype == 0:
-                self._rate_hz = decode_system_status(packet.body).rate_hz or RATE_HZ
-            else:
-                setup = decode_bird_status(packet.body)
-                self._setups[packet.xtype] = replace(setup, range_inch=RANGE_INCH)
-        except PacketError:
-            return Packet(Kind.ILLEGAL, packet.sequence, packet.xtype)
-        return reply(packet)
-
-    def _words(self, at_s: float) -> dict[int, tuple[int, ...]]:
-        positions, orientations = self._poses(at_s)
-        return {
-            bird: words_of_pose(position, turn, self._setups[bird].form, Scaling(RANGE_INCH))
-            for bird, position, turn in zip(self._birds, positions, orientations, strict=True)
-        }
-
-    def _body(self, words: dict[int, tuple[int, ...]]) -> bytes:
-        return encode_data({b: (self._setups[b].form, w) for b, w in words.items()})
-
     def _measure(self, at_s: float) -> None:
         every = self._setups[self._birds[0]].report_every
         if not self._sending or self._cycle % max(1, every):
             return
         self._sequence = (self._sequence + self._faults.numbered) % SEQUENCES
-        words = self._words(at_s)
+        birds, scaling = {}, Scaling(RANGE_INCH)
+        for bird, place, turned in zip(self._birds, *self._poses(at_s), strict=True):
+            form = self._setups[bird].form
+            birds[bird] = form, words_of_pose(place, turned, form, scaling)
+        body = encode_data(birds)
         intact = self._random.random() >= self._faults.lost_share
-        if self._log is not None:
-            self._log.append(SentPacket(words, intact))
+        self._sent(0, body, intact=intact)
         if intact:
             since_s = at_s - self._start_s
             seconds, milli = int(since_s), int(since_s % 1.0 * 1000.0)
-            self._send(Packet(Kind.DATA, self._sequence, 0, self._body(words), seconds, milli))
+            self._send(Packet(Kind.DATA, self._sequence, 0, body, seconds, milli))

@@ -6,7 +6,7 @@ import shutil
 import struct
 import tempfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from itertools import pairwise
@@ -50,9 +50,9 @@ class RecordingWriter:
             raise FileError(self._path, "exists already.", remedy) from None
         except OSError as error:
             raise FileError(self._path, f"cannot be written: {error}.") from None
-        head = _values(description) | {"address": address}
+        head = asdict(description) | {"address": address}
         head["started"] = datetime.now(UTC).isoformat(timespec="milliseconds")
-        self._put(MAGIC + _block(HEAD, _text(head)))
+        self._put(MAGIC + _block(HEAD, head))
 
     def write(self, frame: Frame) -> None:
         """Append a frame.
@@ -72,7 +72,7 @@ class RecordingWriter:
         Raises:
             FileError: It cannot be written.
         """
-        self._put(_block(EVENT, _text(asdict(event))))
+        self._put(_block(EVENT, asdict(event)))
 
     def close(self, counts: Counts) -> None:
         """End the recording with what arrived and what did not.
@@ -80,7 +80,7 @@ class RecordingWriter:
         Raises:
             FileError: It cannot be written.
         """
-        self._put(_block(END, _text(asdict(counts))))
+        self._put(_block(END, asdict(counts)))
         os.fsync(self._file)
         os.close(self._file)
 
@@ -130,88 +130,50 @@ def read_live_recording(path: Path | str) -> Recording:
         raise FileError(path, f"cannot be read: {error}.") from None
     if not data.startswith(MAGIC):
         raise FileError(path, "is no recording of a live tracker.", f"It begins with {MAGIC!r}.")
-    return _Reader(Path(path), data).recording()
+    try:
+        return _read_blocks(Path(path), data)
+    except (ValueError, KeyError, TypeError) as error:
+        raise FileError(path, f"holds a block that cannot be read: {error}.") from None
 
 
-class _Reader:
-    """Gathers the blocks of a file."""
-
-    def __init__(self, path: Path, data: bytes) -> None:
-        self._path, self._data = path, data
-        self._end = len(MAGIC)
-
-    def recording(self) -> Recording:
-        head: dict[str, Any] | None = None
-        counts: Counts | None = None
-        frames: list[bytes] = []
-        events: list[Event] = []
-        try:
-            for kind, payload in self._blocks():
-                if kind == HEAD:
-                    head = json.loads(payload)
-                elif kind == FRAME:
-                    frames.append(payload)
-                elif kind == EVENT:
-                    events.append(Event(**json.loads(payload)))
-                elif kind == END:
-                    counts = Counts(**json.loads(payload))
-            if head is None:
-                raise FileError(self._path, "was cut off before it described the tracker.")
-            return self._made(head, frames, tuple(events), counts)
-        except (ValueError, KeyError, TypeError) as error:
-            raise FileError(self._path, f"holds a block that cannot be read: {error}.") from None
-
-    def _blocks(self) -> Iterator[tuple[int, bytes]]:
-        """Kind and payload of every block before the first that is cut off or damaged."""
-        while self._end + BLOCK.size <= len(self._data):
-            size, check, kind = BLOCK.unpack_from(self._data, self._end)
-            start = self._end + BLOCK.size
-            payload = self._data[start : start + size]
-            if size > MOST_BYTES or len(payload) < size or zlib.crc32(payload, kind) != check:
-                return
-            self._end = start + size
-            yield kind, payload
-
-    def _made(
-        self,
-        head: dict[str, Any],
-        frames: list[bytes],
-        events: tuple[Event, ...],
-        counts: Counts | None,
-    ) -> Recording:
-        address, started = str(head.pop("address")), str(head.pop("started"))
-        description = Description(**head | {"sensors": tuple(head["sensors"])})
-        count = len(description.sensors)
-        stamps = np.array([STAMPS.unpack_from(each) for each in frames]).reshape(-1, 3)
-        numbers = b"".join(each[STAMPS.size :] for each in frames)
-        poses = np.frombuffer(numbers, "<f8").reshape(len(frames), count, 7)
-        return Recording(
-            description=description,
-            address=address,
-            started=started,
-            host_s=stamps[:, 0],
-            device_s=stamps[:, 1],
-            cycles=stamps[:, 2].astype(np.int64),
-            positions=poses[..., :3],
-            orientations=poses[..., 3:],
-            events=events,
-            counts=counts,
-            dropped_bytes=len(self._data) - self._end,
-        )
+def _read_blocks(path: Path, data: bytes) -> Recording:
+    """Every block before the first that is cut off or damaged."""
+    blocks: dict[int, list[bytes]] = {HEAD: [], FRAME: [], EVENT: [], END: []}
+    end = len(MAGIC)
+    while end + BLOCK.size <= len(data):
+        size, check, kind = BLOCK.unpack_from(data, end)
+        payload = data[end + BLOCK.size : end + BLOCK.size + size]
+        if size > MOST_BYTES or len(payload) < size or zlib.crc32(payload, kind) != check:
+            break
+        end += BLOCK.size + size
+        blocks.setdefault(kind, []).append(payload)
+    if not blocks[HEAD]:
+        raise FileError(path, "was cut off before it described the tracker.")
+    head, counts = json.loads(blocks[HEAD][-1]), blocks[END]
+    address, started = str(head.pop("address")), str(head.pop("started"))
+    description = Description(**head | {"sensors": tuple(head["sensors"])})
+    frames = blocks[FRAME]
+    stamps = np.array([STAMPS.unpack_from(each) for each in frames]).reshape(-1, 3)
+    numbers = b"".join(each[STAMPS.size :] for each in frames)
+    poses = np.frombuffer(numbers, "<f8").reshape(len(frames), len(description.sensors), 7)
+    return Recording(
+        description=description,
+        address=address,
+        started=started,
+        host_s=stamps[:, 0],
+        device_s=stamps[:, 1],
+        cycles=stamps[:, 2].astype(np.int64),
+        positions=poses[..., :3],
+        orientations=poses[..., 3:],
+        events=tuple(Event(**json.loads(each)) for each in blocks[EVENT]),
+        counts=Counts(**json.loads(counts[-1])) if counts else None,
+        dropped_bytes=len(data) - end,
+    )
 
 
-def _block(kind: int, payload: bytes) -> bytes:
+def _block(kind: int, value: dict[str, Any] | bytes) -> bytes:
+    payload = value if isinstance(value, bytes) else json.dumps(value).encode()
     return BLOCK.pack(len(payload), zlib.crc32(payload, kind), kind) + payload
-
-
-def _text(value: dict[str, Any]) -> bytes:
-    return json.dumps(value).encode()
-
-
-def _values(description: Description) -> dict[str, Any]:
-    names = ("kind", "model", "sensors", "rate_hz", "has_positions", "has_orientations")
-    out = {name: getattr(description, name) for name in names}
-    return out | {"details": dict(description.details)}
 
 
 PARTS = ("x", "y", "z", "qx", "qy", "qz", "qw", "valid")
@@ -227,11 +189,6 @@ class Mount:
     end_effector: str = ""
     side: str = "none"
 
-    @property
-    def attends(self) -> bool:
-        """Whether it shows where the performer looks, rather than what is done."""
-        return self.end_effector == "head"
-
 
 def usual_mount(name: str) -> Mount:
     """What a name says: ``right_hand`` rides on the right hand, ``mug`` on an object."""
@@ -243,25 +200,20 @@ def usual_mount(name: str) -> Mount:
 
 
 def frame_times(recording: Recording) -> Float[np.ndarray, "frames"]:
-    """When each frame was measured [s], from the first on; it does not always increase."""
-    device_s = recording.device_s
-    if np.isfinite(device_s).all() and (np.diff(device_s) > 0.0).all():
-        times = device_s
-    else:
-        times = _straightened(recording)
+    """When each frame was measured [s], from the first on; it does not always increase.
+
+    It is the device's time, or arrival on a line by cycle number within each connection.
+    """
+    times, cycles = recording.device_s, recording.cycles
+    if not np.isfinite(times).all() or not (np.diff(times) > 0.0).all():
+        times = recording.host_s.copy()
+        starts = [0, *(np.flatnonzero(np.diff(cycles) <= 0) + 1).tolist(), len(cycles)]
+        for first, end in pairwise(starts):
+            part = slice(first, end)
+            if end - first >= FEWEST and cycles[first] != NO_CYCLE:
+                slope, offset = np.polyfit(cycles[part], times[part], 1)
+                times[part] = offset + slope * cycles[part]
     return np.asarray(times - times[0])
-
-
-def _straightened(recording: Recording) -> np.ndarray:
-    """Arrival, on a line by cycle number within each connection."""
-    times, cycles = recording.host_s.copy(), recording.cycles
-    starts = [0, *(np.flatnonzero(np.diff(cycles) <= 0) + 1).tolist(), len(cycles)]
-    for first, end in pairwise(starts):
-        part = slice(first, end)
-        if end - first >= FEWEST and cycles[first] != NO_CYCLE:
-            slope, offset = np.polyfit(cycles[part], times[part], 1)
-            times[part] = offset + slope * cycles[part]
-    return times
 
 
 def write_bundle(
@@ -343,33 +295,21 @@ def _capture_toml(recording: Recording, name: str, mounts: Mapping[str, Mount], 
         head.append(f"# {late} frames came with a time that was not later, and are left out.")
     head += [f"# {event.message}" for event in recording.events]
     out = [each.replace("\n", " ") for each in head]
-    out += [
-        f'name = "{_bare(name)}"',
-        f'recorded = "{recording.started}"',
-        'unit = "m"',
-        'up = "z"',
-        "",
-        "[files]",
-    ]
-    out += ['motion = "motion.csv"', "", "[agent]", 'name = "agent"']
+    bare = "".join(each if each.isalnum() or each in "-_." else "_" for each in name)
+    out += [f'name = "{bare}"', f'recorded = "{recording.started}"', 'unit = "m"', 'up = "z"', ""]
+    out += ["[files]", 'motion = "motion.csv"', "", "[agent]", 'name = "agent"']
     names = recording.description.sensors
     rides = {each: mounts.get(each, usual_mount(each)) for each in names}
     if not any(each.end_effector for each in rides.values()):
         out += ["", "# No sensor's name says what it rides on: correct end_effector and side."]
         rides = {each: Mount(each) for each in names}
     for each, mount in rides.items():
-        out += ["", *_body(each, mount)]
+        out += ["", "[[sensor]]" if mount.end_effector else "[[object]]", f'name = "{each}"']
+        if not mount.end_effector:
+            out.append('tag = "mobile"')
+        else:
+            out.append(f'end_effector = "{mount.end_effector}"')
+            out += [f'side = "{mount.side}"'] if mount.side != "none" else []
+            out += ['role = "attends"'] if mount.end_effector == "head" else []
+        out.append(f'body = "{each}"')
     return "\n".join(out) + "\n"
-
-
-def _body(name: str, mount: Mount) -> list[str]:
-    if not mount.end_effector:
-        return ["[[object]]", f'name = "{name}"', 'tag = "mobile"', f'body = "{name}"']
-    out = ["[[sensor]]", f'name = "{name}"', f'end_effector = "{mount.end_effector}"']
-    out += [f'side = "{mount.side}"'] if mount.side != "none" else []
-    out += ['role = "attends"'] if mount.attends else []
-    return [*out, f'body = "{name}"']
-
-
-def _bare(name: str) -> str:
-    return "".join(each if each.isalnum() or each in "-_." else "_" for each in name)

@@ -13,7 +13,7 @@ from abc import ABC, abstractmethod
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol, Self
+from typing import Generic, Protocol, Self, TypeVar
 
 import numpy as np
 from jaxtyping import Float
@@ -24,6 +24,7 @@ from capar.model.errors import DeviceError, UnknownNameError
 from extractors.devices.lines import BITS
 
 IDLE_S = 0.02  # Longest wait for anything [s].
+BYTE_S = BITS / 115200  # Time of a byte on a simulated line [s].
 TICK_S = 0.002  # How often a serial line that has something to send is attended to [s].
 HELD_UP_S = 0.25
 """A simulator that did not run for longer was held up by its computer [s]: its clock stood still,
@@ -104,6 +105,43 @@ class CapturedMotion:
         return self._positions[frame], self._orientations[frame]
 
 
+@dataclass(frozen=True)
+class Faults:
+    """What goes wrong with what a device sends."""
+
+    lost_share: float = 0.0
+    """Share of the bytes, or of a network's data packets, that are lost."""
+
+    garbled_share: float = 0.0
+    """Share of the bytes of which one bit is turned over."""
+
+    wrong_address_share: float = 0.0
+    """Share of the records that carry the address of a bird that is not there."""
+
+    reply_delay_s: float = 0.0
+    """How much later than usual a poll is answered [s]."""
+
+    error: int = 0
+    """Error code that a flock or a MotionStar reports."""
+
+    numbered: bool = True
+    """Whether a MotionStar's data packets have sequence numbers of their own."""
+
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Sent:
+    """A record, or the body of a network's data packet, that a simulator sent."""
+
+    address: int
+    data: bytes
+    """Its bytes before any fault."""
+
+    intact: bool = True
+    """Whether all of them went out as they were."""
+
+
 class Simulator(ABC):
     """A simulated tracker in a thread of its own, as a context manager.
 
@@ -113,11 +151,17 @@ class Simulator(ABC):
     Args:
         motion: What is measured.
         rate_hz: Measuring cycles a second.
+        faults: What goes wrong.
+        log: Where everything that is sent is kept, if anywhere.
     """
 
-    def __init__(self, motion: MotionSource, rate_hz: float) -> None:
+    def __init__(
+        self, motion: MotionSource, rate_hz: float, faults: Faults, log: list[Sent] | None
+    ) -> None:
         self._motion = motion
         self._rate_hz = rate_hz
+        self._faults = faults
+        self._log = log
         self._cycle = 0
         self._start_s = self._next_s = self._ran_s = time.monotonic()
         self._lock = threading.Lock()
@@ -128,19 +172,6 @@ class Simulator(ABC):
     @abstractmethod
     def place(self) -> str:
         """The place in a device address."""
-
-    def start(self) -> None:
-        """Plug it in, and measure."""
-        self._plug()
-        self._running = True
-        self._start_s = self._next_s = self._ran_s = time.monotonic()
-        self._thread.start()
-
-    def stop(self) -> None:
-        """End, and let go of lines and ports."""
-        self._running = False
-        self._thread.join()
-        self._unplug()
 
     def unplug(self) -> None:
         """Pull all plugs."""
@@ -153,13 +184,18 @@ class Simulator(ABC):
             self._plug()
 
     def __enter__(self) -> Self:
-        """Start it."""
-        self.start()
+        """Plug it in, and measure."""
+        self._plug()
+        self._running = True
+        self._start_s = self._next_s = self._ran_s = time.monotonic()
+        self._thread.start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Stop it."""
-        self.stop()
+        """End, and let go of lines and ports."""
+        self._running = False
+        self._thread.join()
+        self._unplug()
 
     def _run(self) -> None:
         while self._running:
@@ -171,7 +207,10 @@ class Simulator(ABC):
                 time.sleep(IDLE_S)
                 ready = []
             with self._lock:
-                self._stand_still(time.monotonic())
+                now = time.monotonic()
+                held_up_s, self._ran_s = now - self._ran_s, now
+                if held_up_s > HELD_UP_S:
+                    self._stand_still(held_up_s)
                 self._attend(set(ready).intersection(self._handles()))
                 now = time.monotonic()
                 while self._next_s <= now:
@@ -179,22 +218,20 @@ class Simulator(ABC):
                     self._cycle += 1
                     self._next_s += 1.0 / self._rate_hz
 
-    def _stand_still(self, now_s: float) -> None:
-        """Put clocks back by the time in which the simulator was held up."""
-        held_up_s, self._ran_s = now_s - self._ran_s, now_s
-        if held_up_s > HELD_UP_S:
-            self._start_s += held_up_s
-            self._next_s += held_up_s
-            self._hold_lines(held_up_s)
+    def _stand_still(self, held_up_s: float) -> None:
+        """Put clocks back by the time in which the simulator was held up [s]."""
+        self._start_s += held_up_s
+        self._next_s += held_up_s
 
     def _poses(self, at_s: float) -> Poses:
         return self._motion.poses(at_s - self._start_s)
 
+    def _sent(self, address: int, data: bytes, *, intact: bool = True) -> None:
+        if self._log is not None:
+            self._log.append(Sent(address, data, intact))
+
     def _wait_s(self) -> float:
         return min(IDLE_S, max(0.0, self._next_s - time.monotonic()))
-
-    def _hold_lines(self, held_up_s: float) -> None:  # noqa: B027  # networks have no speed
-        """Carry nothing for so long [s]."""
 
     @abstractmethod
     def _plug(self) -> None:
@@ -217,50 +254,15 @@ class Simulator(ABC):
         """Send what is due at this time of the monotonic clock [s]."""
 
 
-@dataclass(frozen=True)
-class Faults:
-    """What goes wrong with what a device sends by a serial line."""
-
-    lost_share: float = 0.0
-    """Share of the bytes that are lost."""
-
-    garbled_share: float = 0.0
-    """Share of the bytes of which one bit is turned over."""
-
-    wrong_address_share: float = 0.0
-    """Share of the records that carry the address of a bird that is not there."""
-
-    reply_delay_s: float = 0.0
-    """How much later than usual a poll is answered [s]."""
-
-    seed: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class Sent:
-    """A record that a simulator sent."""
-
-    address: int
-    data: bytes
-    """Its bytes before any fault."""
-
-    intact: bool
-    """Whether all of them went out as they were."""
-
-
 class SimulatedLine:
     """The device's end of a serial line with a speed and faults; the other is a pseudo-terminal.
 
     Args:
-        baud: Its speed [bits a second].
         faults: What goes wrong with the bytes.
     """
 
-    def __init__(self, baud: int, faults: Faults) -> None:
-        self.faults = faults
-        self.byte_s = BITS / baud
-        """Time of a byte on the line [s]."""
-
+    def __init__(self, faults: Faults) -> None:
+        self._faults = faults
         self.handle = -1
         self._slave = -1
         self._queue = bytearray()
@@ -284,7 +286,7 @@ class SimulatedLine:
     @property
     def free_at_s(self) -> float:
         """When what is queued will have gone out [s]."""
-        return self._sent_until_s + len(self._queue) * self.byte_s
+        return self._sent_until_s + len(self._queue) * BYTE_S
 
     def plug(self) -> None:
         """Make the device file, raw from the start."""
@@ -318,16 +320,16 @@ class SimulatedLine:
             self._sent_until_s = max(self._sent_until_s, at_s)
         spoilt = bytearray()
         for byte in data:
-            if self.random.random() < self.faults.lost_share:
+            if self.random.random() < self._faults.lost_share:
                 continue
-            garbled = self.random.random() < self.faults.garbled_share
+            garbled = self.random.random() < self._faults.garbled_share
             spoilt.append(byte ^ 1 << self.random.randrange(8) if garbled else byte)
         self._queue += spoilt
         return bytes(spoilt) == data
 
     def pump(self, now_s: float) -> None:
         """Let out the bytes that the line's speed has carried by now."""
-        due = min(len(self._queue), int((now_s - self._sent_until_s) / self.byte_s))
+        due = min(len(self._queue), int((now_s - self._sent_until_s) / BYTE_S))
         if due <= 0:
             return
         try:
@@ -335,7 +337,7 @@ class SimulatedLine:
         except OSError:  # nobody reads: what the port cannot hold is overrun
             written = due
         del self._queue[:written]
-        self._sent_until_s += written * self.byte_s
+        self._sent_until_s += written * BYTE_S
 
     def hold(self, held_up_s: float) -> None:
         """Carry nothing for so long [s]."""
@@ -345,39 +347,41 @@ class SimulatedLine:
         """Drop what is queued."""
         self._queue.clear()
 
+    def close(self) -> None:
+        """Remove the device file for good."""
+        self._folder.cleanup()
 
-class SerialSimulator(Simulator):
+
+Line = TypeVar("Line", bound=SimulatedLine)
+
+
+class SerialSimulator(Simulator, Generic[Line]):
     """A tracker on one or several simulated lines; a cycle for which one has no room is skipped.
 
     Args:
         motion: What is measured.
         rate_hz: Measuring cycles a second.
-        lines: The lines.
+        lines: The lines, all with the same faults.
         log: Where every record that is sent is kept, if anywhere.
     """
 
     def __init__(
-        self,
-        motion: MotionSource,
-        rate_hz: float,
-        lines: list[SimulatedLine],
-        log: list[Sent] | None,
+        self, motion: MotionSource, rate_hz: float, lines: list[Line], log: list[Sent] | None
     ) -> None:
-        super().__init__(motion, rate_hz)
+        super().__init__(motion, rate_hz, lines[0]._faults, log)
         self.skipped = 0
         self._lines = lines
-        self._log = log
 
     @property
     def place(self) -> str:
         """The device files, divided by commas."""
         return ",".join(line.path for line in self._lines)
 
-    def stop(self) -> None:
+    def __exit__(self, *_: object) -> None:
         """End, and remove the device files."""
-        super().stop()
+        super().__exit__()
         for line in self._lines:
-            line._folder.cleanup()
+            line.close()
 
     def _plug(self) -> None:
         self._power_up()
@@ -388,7 +392,8 @@ class SerialSimulator(Simulator):
         for line in self._lines:
             line.unplug()
 
-    def _hold_lines(self, held_up_s: float) -> None:
+    def _stand_still(self, held_up_s: float) -> None:
+        super()._stand_still(held_up_s)
         for line in self._lines:
             line.hold(held_up_s)
 
@@ -409,27 +414,23 @@ class SerialSimulator(Simulator):
                 self._report(line, now)
             line.pump(time.monotonic())
 
-    def _stream(self, line: SimulatedLine, at_s: float, period_s: float) -> None:
+    def _stream(self, line: Line, at_s: float, period_s: float) -> None:
         """Report a cycle, if the line has room for it."""
         if line.handle >= 0 and line.free_at_s - at_s > period_s:
             self.skipped += 1
         elif line.handle >= 0:
             self._report(line, at_s)
 
-    def _sent(self, address: int, data: bytes, *, intact: bool) -> None:
-        if self._log is not None:
-            self._log.append(Sent(address, data, intact))
-
     @abstractmethod
     def _power_up(self) -> None:
         """Forget all settings."""
 
     @abstractmethod
-    def _listen(self, line: SimulatedLine) -> None:
+    def _listen(self, line: Line) -> None:
         """Obey what came by a line."""
 
     @abstractmethod
-    def _report(self, line: SimulatedLine, at_s: float) -> None:
+    def _report(self, line: Line, at_s: float) -> None:
         """Send the records of a line's sensors at a time [s]."""
 
 
@@ -439,11 +440,20 @@ class ServerSimulator(Simulator):
     Args:
         motion: What is measured.
         rate_hz: Measuring cycles a second.
+        faults: What goes wrong.
+        log: Where everything that is sent is kept, if anywhere.
         port: TCP port; 0 takes a free one.
     """
 
-    def __init__(self, motion: MotionSource, rate_hz: float, port: int) -> None:
-        super().__init__(motion, rate_hz)
+    def __init__(
+        self,
+        motion: MotionSource,
+        rate_hz: float,
+        faults: Faults,
+        log: list[Sent] | None,
+        port: int,
+    ) -> None:
+        super().__init__(motion, rate_hz, faults, log)
         self.port = port
         self._listening: socket.socket | None = None
         self._client: socket.socket | None = None

@@ -2,10 +2,9 @@
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from types import MappingProxyType
-from typing import Self
+from typing import Self, TypeVar
 from urllib.parse import unquote
 
 import numpy as np
@@ -16,7 +15,6 @@ from capar.model.errors import DeviceError, UnknownNameError
 
 RETRY_S = 0.5  # Pause between two attempts to reach a device that went away [s].
 POLL_S = 0.1  # Longest wait for a device's next bytes before anything else is attended to [s].
-FLAGS = {"yes": True, "no": False}
 
 
 class DeviceLostError(DeviceError):
@@ -54,7 +52,7 @@ class Address:
 
     def flag(self, name: str) -> bool:
         """An option that is ``yes`` or, if it is not given, ``no``."""
-        return FLAGS[self.choice(name, FLAGS, "no")]
+        return self.choice(name, ("yes", "no"), "no") == "yes"
 
     def number(self, name: str, default: float, *, low: float, high: float) -> float:
         """An option that is a number within bounds, which belong to it.
@@ -171,10 +169,6 @@ class Description:
     details: Mapping[str, str] = field(default_factory=dict)
     """What else it said: firmware, format, range ..."""
 
-    def __post_init__(self) -> None:
-        """Make the details read-only."""
-        object.__setattr__(self, "details", MappingProxyType(dict(self.details)))
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Frame:
@@ -279,11 +273,6 @@ class LiveTracker(ABC):
         self.counts.frames += len(frames)
         return frames
 
-    def frames(self) -> Iterator[Frame]:
-        """Every frame until the tracker is closed, waiting for each."""
-        while self._wanted:
-            yield from self.poll(POLL_S)
-
     def close(self) -> None:
         """Have the device stop, and let go of it."""
         self._wanted = False
@@ -361,96 +350,21 @@ class SensorReading:
     device_s: float | None = None
 
 
-class CycleCounter:
-    """Numbers the measuring cycles of records that carry no number, but come in order.
-
-    A record follows the one before; where bytes were dropped, as many are taken to be missing as
-    the bytes are of, to the nearest that the order of the sensors allows. Time is not asked: a
-    busy computer reads late.
-
-    Args:
-        sensors: How many send in turn.
-    """
-
-    def __init__(self, sensors: int) -> None:
-        self._sensors = sensors
-        self._place = -1
-        self.started = False
-        """Whether a record was numbered."""
-
-    def start(self, cycle: int, index: int) -> int:
-        """Begin with a record of a sensor in a cycle."""
-        self._place, self.started = cycle * self._sensors + index, True
-        return cycle
-
-    def cycle_of(self, index: int, *, missed: int) -> int:
-        """The cycle of the next record, of a sensor."""
-        if not self.started:
-            return self.start(0, index)
-        cycle = round((self._place + 1 + missed - index) / self._sensors)
-        while cycle * self._sensors + index <= self._place:
-            cycle += 1
-        return self.start(cycle, index)
+Message = TypeVar("Message")
 
 
-class FrameCollector:
-    """Makes frames of the readings of numbered cycles; what is missing is counted, not filled in.
+def take_messages(
+    buffer: bytearray, decode: Callable[[bytearray], tuple[Message, int] | None]
+) -> Iterator[Message]:
+    """The messages that a buffer begins with, each removed from it.
 
     Args:
-        sensors: How many there are.
-        counts: Where lost records are counted.
-        ahead: How many newer cycles are begun before an incomplete one is given as it is, though
-            some sensor has not got past it.
-        counted: Whether cycles are equally long, so that frames bear their numbers.
+        buffer: The bytes that have come.
+        decode: The message at the start of some bytes, and its length; None where more are needed.
     """
-
-    def __init__(
-        self, sensors: int, counts: Counts, *, ahead: int = 0, counted: bool = True
-    ) -> None:
-        self._sensors = sensors
-        self._counts = counts
-        self._ahead = ahead
-        self._counted = counted
-        self._begun: dict[int, dict[int, SensorReading]] = {}
-        self._given = -1
-        self._newest = [-1] * sensors
-
-    def start_after(self, cycle: int) -> None:
-        """Count from a cycle on; nothing before it is missing."""
-        self._begun.clear()
-        self._newest = [cycle] * self._sensors
-        self._given = cycle
-
-    def add(self, cycle: int, reading: SensorReading) -> list[Frame]:
-        """The frames that a reading completes, or shows to be incomplete."""
-        if cycle <= self._given:
-            self._counts.refused_records += 1
-            return []
-        self._counts.records += 1
-        self._begun.setdefault(cycle, {})[reading.index] = reading
-        self._newest[reading.index] = max(cycle, self._newest[reading.index])
-        passed = max(min(self._newest), max(self._newest) - self._ahead - 1)
-        done = [
-            number
-            for number, readings in self._begun.items()
-            if len(readings) == self._sensors or number <= passed
-        ]
-        return self._give(max(done)) if done else []
-
-    def flush(self) -> list[Frame]:
-        """The frames that were begun."""
-        return self._give(max(self._begun)) if self._begun else []
-
-    def _give(self, last: int) -> list[Frame]:
-        """Every frame begun up to a cycle."""
-        out = []
-        for cycle in sorted(number for number in self._begun if number <= last):
-            readings = list(self._begun.pop(cycle).values())
-            missing = self._sensors - len(readings)
-            self._counts.lost_records += missing + self._sensors * (cycle - self._given - 1)
-            self._given = cycle
-            out.append(frame_of(readings, self._sensors, cycle=cycle if self._counted else None))
-        return out
+    while (found := decode(buffer)) is not None:
+        del buffer[: found[1]]
+        yield found[0]
 
 
 def frame_of(readings: Sequence[SensorReading], sensors: int, *, cycle: int | None = None) -> Frame:

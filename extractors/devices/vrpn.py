@@ -2,13 +2,17 @@
 
 import struct
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from capar.model.capture import UP, upward
+from extractors.devices.bird_formats import NORM_TOLERANCE
 from extractors.devices.lines import NetworkLine
-from extractors.devices.simulator import MotionSource, ServerSimulator
+from extractors.devices.records import Values
+from extractors.devices.simulator import Faults, MotionSource, Sent, ServerSimulator
 from extractors.devices.tracker import (
     Address,
     Description,
@@ -17,10 +21,10 @@ from extractors.devices.tracker import (
     LiveTracker,
     SensorReading,
     frame_of,
+    take_messages,
 )
 
-COOKIE = b"vrpn: ver. 07.38  0"
-COOKIE_SIZE = 24
+COOKIE = b"vrpn: ver. 07.38  0".ljust(24, b"\0")  # What each side sends first.
 MAJOR = b"vrpn: ver. 07."
 HEADER = struct.Struct(">6i")
 ALIGN = 8
@@ -44,11 +48,6 @@ class Message:
     payload: bytes = b""
     sequence: int = 0
 
-    @property
-    def stamp_s(self) -> float:
-        """The sender's time [s]."""
-        return self.seconds + self.microseconds * 1e-6
-
     def encode(self) -> bytes:
         """The message's bytes, padded."""
         head = HEADER.pack(
@@ -56,11 +55,6 @@ class Message:
             self.sender, self.type, self.sequence,
         )  # fmt: skip
         return head + self.payload + bytes(-len(self.payload) % ALIGN)
-
-
-def cookie() -> bytes:
-    """What each side sends first."""
-    return COOKIE.ljust(COOKIE_SIZE, b"\0")
 
 
 def check_cookie(data: bytes) -> None:
@@ -73,7 +67,7 @@ def check_cookie(data: bytes) -> None:
         raise DeviceLostError(f"no VRPN 7 server: it began with {data!r}")
 
 
-def decode_message(data: bytes | memoryview) -> tuple[Message, int] | None:
+def decode_message(data: bytes | bytearray) -> tuple[Message, int] | None:
     """The message at the start of some bytes, and its length; None where more are needed.
 
     Raises:
@@ -110,67 +104,24 @@ def decode_name(payload: bytes) -> str | None:
         return None
 
 
-@dataclass(frozen=True)
-class SensorPose:
+def encode_pose(sensor: int, position: Sequence[float], quaternion: Sequence[float]) -> bytes:
     """Payload of a pose: the sensor's number, x y z [m], and the quaternion x y z w."""
-
-    sensor: int
-    position: tuple[float, ...]
-    quaternion: tuple[float, ...]
-
-    def encode(self) -> bytes:
-        """The pose as a payload."""
-        return POSE.pack(self.sensor, 0, *self.position, *self.quaternion)
+    return POSE.pack(sensor, 0, *position, *quaternion)
 
 
-def decode_pose(payload: bytes) -> SensorPose | None:
-    """The pose that a payload holds; None where it has another length."""
+def decode_pose(payload: bytes) -> tuple[int, Values, Values] | None:
+    """Sensor, position and quaternion of a payload; None where it has another length."""
     if len(payload) != POSE.size:
         return None
     sensor, _, *values = POSE.unpack(payload)
-    return SensorPose(sensor, tuple(values[:3]), tuple(values[3:]))
-
-
-class MessageParser:
-    """Cuts a stream of bytes into messages."""
-
-    def __init__(self) -> None:
-        self._buffer = bytearray()
-
-    def feed(self, data: bytes) -> list[Message]:
-        """The messages that some bytes complete.
-
-        Raises:
-            DeviceLostError: The bytes are no messages.
-        """
-        self._buffer += data
-        out = []
-        view = memoryview(bytes(self._buffer))
-        at = 0
-        while (found := decode_message(view[at:])) is not None:
-            out.append(found[0])
-            at += found[1]
-        del self._buffer[:at]
-        return out
+    return sensor, tuple(values[:3]), tuple(values[3:])
 
 
 PORT = 3883
 COOKIE_S = 3.0
 PING_S = 1.0  # How often the server is asked whether it is there [s].
 SILENCE_S = 5.0  # A server that answers nothing for so long is lost [s].
-NORM_TOLERANCE = 0.05
-OURS = "capar"
 PING, PONG = 0, 1  # Our numbers of the types that we send.
-
-UP = {
-    "z": Rotation.identity(),
-    "y": Rotation.from_euler("x", 90.0, degrees=True),
-    "x": Rotation.from_euler("y", -90.0, degrees=True),
-    "-z": Rotation.from_euler("x", 180.0, degrees=True),
-    "-y": Rotation.from_euler("x", -90.0, degrees=True),
-    "-x": Rotation.from_euler("y", 90.0, degrees=True),
-}
-"""The turn that brings each axis to z."""
 
 
 class VrpnTracker(LiveTracker):
@@ -191,12 +142,12 @@ class VrpnTracker(LiveTracker):
         self._line = NetworkLine(*address.host_port(host, PORT))
         self._count = address.integer("sensors", 1, low=1, high=1000)
         self._names = address.names(f"sensor{index}" for index in range(self._count))
-        self._up = UP[address.choice("up", UP, "z")]
+        self._up = upward(address.choice("up", UP, "z"))
         address.close()
         self._start()
 
     def _start(self) -> None:
-        self._parser = MessageParser()
+        self._buffer = bytearray()
         self._early = b""
         self._senders: dict[int, str] = {}
         self._types: dict[int, str] = {}
@@ -210,18 +161,15 @@ class VrpnTracker(LiveTracker):
     def _connect(self) -> None:
         self._start()
         self._line.open()
-        self._line.write(cookie())
+        self._line.write(COOKIE)
         data, deadline = b"", time.monotonic() + COOKIE_S
-        while len(data) < COOKIE_SIZE:
+        while len(data) < len(COOKIE):
             if time.monotonic() > deadline:
                 raise DeviceLostError("the server does not say that it is VRPN")
             data += self._line.read(0.1)
         check_cookie(data)
-        self._describe_ours()
-        self._early = data[COOKIE_SIZE:]
-
-    def _describe_ours(self) -> None:
-        """Name the sender and the types of what we send: the tracker's, as clients do."""
+        self._early = data[len(COOKIE) :]
+        # name the sender and the types of what we send: the tracker's, as clients do
         for kind, number, name in (
             (SENDER_DESCRIPTION, 0, self._device),
             (TYPE_DESCRIPTION, PING, PING_TYPE),
@@ -239,14 +187,15 @@ class VrpnTracker(LiveTracker):
 
     def _read(self, timeout_s: float) -> list[Frame]:
         since_s = time.monotonic()
-        data = self._early or self._line.read(timeout_s)
-        self._early = b""
+        data, self._early = self._early or self._line.read(timeout_s), b""
+        self._buffer += data
         self._listened(since_s, SILENCE_S, heard=bool(data))
         now = time.monotonic()
         if now - self._asked_s > PING_S:
             self._asked_s = now
             self._send(PING)
-        return [f for each in self._parser.feed(data) for f in self._take(each, now)]
+        messages = take_messages(self._buffer, decode_message)
+        return [frame for each in messages for frame in self._take(each, now)]
 
     def _take(self, message: Message, now: float) -> list[Frame]:
         """What a message brings: a name, a question whether we are there, or a pose."""
@@ -264,31 +213,22 @@ class VrpnTracker(LiveTracker):
         return self._pose(message, now) if kind == POSE_TYPE else []
 
     def _pose(self, message: Message, now: float) -> list[Frame]:
-        pose = decode_pose(message.payload)
-        norm = float(np.linalg.norm(pose.quaternion)) if pose is not None else 0.0
-        known = pose is not None and 0 <= pose.sensor < self._count
-        if pose is None or not known or not abs(norm - 1.0) <= NORM_TOLERANCE:
+        """The frames that a pose ends: by being the last, or of another time."""
+        sensor, position, quaternion = decode_pose(message.payload) or (-1, (), ())
+        norm = float(np.linalg.norm(quaternion))
+        if not 0 <= sensor < self._count or not abs(norm - 1.0) <= NORM_TOLERANCE:
             self.counts.refused_records += 1
             return []
         self.counts.records += 1
-        turn = self._up * Rotation.from_quat(pose.quaternion)
-        reading = SensorReading(
-            pose.sensor,
-            now,
-            self._up.apply(pose.position),
-            turn.as_quat(scalar_first=True),
-            message.stamp_s,
-        )
-        return self._gather(reading)
-
-    def _gather(self, reading: SensorReading) -> list[Frame]:
-        """The frames that a reading ends: by being the last, or of another time."""
+        turned = (self._up * Rotation.from_quat(quaternion)).as_quat(scalar_first=True)
+        stamp_s = message.seconds + message.microseconds * 1e-6
+        reading = SensorReading(sensor, now, self._up.apply(position), turned, stamp_s)
         out = []
         begun = next(iter(self._partial.values()), reading)
-        if begun.device_s != reading.device_s or reading.index in self._partial:
+        if begun.device_s != stamp_s or sensor in self._partial:
             out.append(frame_of(list(self._partial.values()), self._count))
             self._partial.clear()
-        self._partial[reading.index] = reading
+        self._partial[sensor] = reading
         if len(self._partial) == self._count:
             out.append(frame_of(list(self._partial.values()), self._count))
             self._partial.clear()
@@ -298,14 +238,6 @@ class VrpnTracker(LiveTracker):
 SENDER = 0
 TYPES = {3: POSE_TYPE, 4: PING_TYPE, 5: PONG_TYPE}  # The server's own numbers of its types.
 SERVER_POSE, SERVER_PING, SERVER_PONG = TYPES
-
-
-@dataclass(frozen=True, slots=True)
-class SentPose:
-    """A pose that the server sent."""
-
-    pose: SensorPose
-    stamp_s: float
 
 
 class VrpnSimulator(ServerSimulator):
@@ -322,16 +254,14 @@ class VrpnSimulator(ServerSimulator):
         self,
         motion: MotionSource,
         rate_hz: float = 100.0,
-        log: list[SentPose] | None = None,
+        log: list[Sent] | None = None,
         port: int = 0,
     ) -> None:
-        super().__init__(motion, rate_hz, port)
+        super().__init__(motion, rate_hz, Faults(), log, port)
         self.answers = 0
-        self._log = log
         self._ready = False
         self._asked_s = 0.0
-        self._parser = MessageParser()
-        self._first = b""
+        self._buffer = bytearray()
         self._their_types: dict[int, str] = {}
 
     @property
@@ -350,31 +280,30 @@ class VrpnSimulator(ServerSimulator):
             self._send(SERVER_PING, time.time())
 
     def _welcome(self) -> None:
-        self._ready, self._first = False, b""
-        self._parser, self._their_types = MessageParser(), {}
-        self._put(cookie())
+        self._ready = False
+        self._buffer.clear()
+        self._their_types.clear()
+        self._put(COOKIE)
 
     def _hear(self, data: bytes) -> None:
+        self._buffer += data
         try:
-            if not self._ready:
-                data = self._begin(data)
-            for message in self._parser.feed(data) if self._ready else ():
+            if not self._ready and len(self._buffer) >= len(COOKIE):
+                self._begin()
+            for message in take_messages(self._buffer, decode_message) if self._ready else ():
                 self._take(message)
         except DeviceLostError:
             self._drop()
 
-    def _begin(self, data: bytes) -> bytes:
-        """Check the cookie, name sender and types, and give what came after the cookie."""
-        self._first += data
-        if len(self._first) < COOKIE_SIZE:
-            return b""
-        check_cookie(self._first)
+    def _begin(self) -> None:
+        """Check the cookie, and name sender and types."""
+        check_cookie(bytes(self._buffer))
+        del self._buffer[: len(COOKIE)]
         names = [(SENDER_DESCRIPTION, SENDER, "Tracker0")]
         names += [(TYPE_DESCRIPTION, number, name) for number, name in TYPES.items()]
         for kind, number, name in names:
             self._put(Message(0, 0, number, kind, encode_name(name)).encode())
         self._ready, self._asked_s = True, 0.0
-        return self._first[COOKIE_SIZE:]
 
     def _take(self, message: Message) -> None:
         if message.type == TYPE_DESCRIPTION:
@@ -391,10 +320,7 @@ class VrpnSimulator(ServerSimulator):
     def _measure(self, at_s: float) -> None:
         if not self._ready:
             return
-        positions, orientations = self._poses(at_s)
-        for index, (position, turned) in enumerate(zip(positions, orientations, strict=True)):
-            quaternion = tuple(np.roll(turned, -1).tolist())
-            pose = SensorPose(index, tuple(position.tolist()), quaternion)
-            if self._log is not None:
-                self._log.append(SentPose(pose, at_s))
-            self._send(SERVER_POSE, at_s, pose.encode())
+        for sensor, (position, turned) in enumerate(zip(*self._poses(at_s), strict=True)):
+            payload = encode_pose(sensor, position, np.roll(turned, -1))
+            self._sent(sensor, payload)
+            self._send(SERVER_POSE, at_s, payload)

@@ -4,7 +4,7 @@ import pytest
 import tracked
 
 from capar.model.errors import DeviceError
-from extractors.devices.fastrak import ITEMS, FastrakSimulator, FastrakTracker, fastrak_settings
+from extractors.devices.fastrak import ITEMS, FastrakSimulator, FastrakTracker
 from extractors.devices.simulator import Faults, Sent, SmoothMotion
 from extractors.devices.tracker import parse_address
 
@@ -40,7 +40,7 @@ def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_a
     log: list[Sent] = []
     faults = Faults(lost_share=0.005, seed=4)
     with (
-        FastrakSimulator(SmoothMotion(4), 115200, faults, log) as simulator,
+        FastrakSimulator(SmoothMotion(4), faults, log) as simulator,
         tracker(simulator, f"stations=4&encoding={encoding}") as fastrak,
     ):
         frames = tracked.take(fastrak, 50)
@@ -54,4 +54,4 @@ def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_a
 
 def test_a_line_that_is_too_slow_is_refused_with_the_arithmetic() -> None:
     with pytest.raises(DeviceError, match=r"120 records of 54 bytes are 6480 .* carry 960"):
-        fastrak_settings(parse_address("fastrak:/dev/x?encoding=ascii&baud=9600"))
+        FastrakTracker(parse_address("fastrak:/dev/x?encoding=ascii&baud=9600"))

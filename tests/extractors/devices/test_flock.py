@@ -11,15 +11,12 @@ from hypothesis import strategies as st
 from capar.model.errors import DeviceError
 from extractors.devices.bird_formats import FORMATS
 from extractors.devices.flock import (
-    EXAMINE,
     MOST_HZ,
-    SIZES,
-    FlockPort,
+    FlockLayout,
     FlockRig,
     FlockSimulator,
     FlockTracker,
     flock_settings,
-    line_limit_hz,
 )
 from extractors.devices.simulator import Faults, Sent, SmoothMotion
 from extractors.devices.tracker import parse_address
@@ -29,7 +26,6 @@ WHOLE_S = 0.4
 """Of a line without faults, on which each record is sent and received alike [s]."""
 
 QUIET_S = 0.05
-ANSWER_S = 0.2
 SETTLE = "settle=0.2"
 
 
@@ -39,7 +35,7 @@ def tracker(simulator: FlockSimulator, options: str) -> FlockTracker:
 
 def highest(form: str, birds: int, *, group: bool) -> float:
     """The highest rate that the line carries, in tenths [Hz]."""
-    limit_hz = line_limit_hz(FORMATS[form], birds, 115200, group=group)
+    limit_hz = FlockLayout(FORMATS[form], group).limit_hz(birds, 115200)
     return int(10.0 * min(MOST_HZ, limit_hz)) / 10.0
 
 
@@ -65,17 +61,6 @@ def test_every_format_and_mode_arrives_whole_at_the_highest_rate_of_the_line(
     ):
         assert each.wrong == 0
         assert each.accepted == each.sent
-
-
-def test_each_parameter_is_answered_in_as_many_bytes_as_its_value_has() -> None:
-    with FlockSimulator(SmoothMotion(1), FlockRig(quiet_s=QUIET_S)) as simulator:
-        address = parse_address(f"flock:{simulator.place}?{SETTLE}")
-        port = FlockPort(simulator.place, 0, flock_settings(address))
-        port.open()
-        for parameter, size in SIZES.items():
-            port.line.write(bytes([EXAMINE, parameter]))
-            assert len(port.line.read_exactly(size + 1, ANSWER_S)) == size, parameter
-        port.line.close()
 
 
 @pytest.mark.parametrize("birds", [1, 12])
@@ -213,7 +198,7 @@ def test_a_missing_bird_is_told_with_its_number() -> None:
 
 def test_an_error_of_the_device_is_told_in_words() -> None:
     with (
-        FlockSimulator(SmoothMotion(1), FlockRig(quiet_s=QUIET_S, error=29)) as simulator,
+        FlockSimulator(SmoothMotion(1), FlockRig(quiet_s=QUIET_S), Faults(error=29)) as simulator,
         pytest.raises(DeviceError, match=r"error 29: the transmitter is not active"),
     ):
         tracker(simulator, "birds=1").open()
@@ -237,7 +222,7 @@ def test_a_rate_that_the_line_cannot_carry_is_refused_with_the_arithmetic() -> N
 @given(form=st.sampled_from(sorted(FORMATS)), birds=st.integers(1, 13), erc=st.booleans())
 def test_exactly_the_rates_that_fit_are_taken(form: str, birds: int, erc: bool) -> None:
     group = birds + erc > 1
-    limit_hz = min(MOST_HZ, line_limit_hz(FORMATS[form], birds, 115200, group=group))
+    limit_hz = min(MOST_HZ, FlockLayout(FORMATS[form], group).limit_hz(birds, 115200))
     text = f"flock:/dev/x?birds={birds}&erc={'yes' if erc else 'no'}&format={form}&rate="
     assert flock_settings(parse_address(f"{text}{limit_hz * 0.999}")).rate_hz < limit_hz
     with pytest.raises(DeviceError):

@@ -8,14 +8,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from extractors.devices.bird_formats import FORMATS, Scaling, pose_of_words, words_of_pose
-from extractors.devices.flock import (
-    KEPT,
-    RecordParser,
-    decode_word,
-    encode_record,
-    encode_word,
-    record_size,
-)
+from extractors.devices.flock import KEPT, FlockLayout
+from extractors.devices.records import RecordParser
 
 WORDS = st.integers(-0x8000, 0x7FFF)
 FORMS = st.sampled_from(sorted(FORMATS))
@@ -29,28 +23,27 @@ def kept(word: int) -> int:
     return value - 0x10000 if value & 0x8000 else value
 
 
+def flock_parser(layout: FlockLayout, byte_s: float = 0.0) -> RecordParser:
+    return RecordParser(layout, BIRDS if layout.group else (0,), byte_s)
+
+
 def test_every_word_survives_but_for_its_two_lowest_bits() -> None:
-    for word in range(-0x8000, 0x8000):
-        low, high = encode_word(word)
-        assert low < 0x80
-        assert high < 0x80
-        assert decode_word(low, high) == kept(word)
-
-
-def test_every_pair_of_bytes_is_a_word_that_encodes_to_them() -> None:
-    for low in range(0x80):
-        for high in range(0x80):
-            assert encode_word(decode_word(low, high)) == (low, high)
-            assert decode_word(low | 0x80, high) == decode_word(low, high)
+    layout = FlockLayout(FORMATS["pos"], group=False)
+    for word in range(-0x8000, 0x8000, 3):
+        words = (word, word + 1, min(word + 2, 0x7FFF))
+        data = layout.encode(words)
+        assert [byte >= 0x80 for byte in data] == [True, *[False] * 5]
+        assert layout.decode(data, ended=True) == (0, tuple(map(kept, words)))
 
 
 def test_the_vendors_example_is_read_and_written() -> None:
     data = bytes.fromhex("C8 08 51 19 59 2A")
-    parser = RecordParser(FORMATS["pos"])
+    layout = FlockLayout(FORMATS["pos"], group=False)
+    parser = flock_parser(layout)
     assert parser.feed(data) == []
     (record,) = parser.settle()
-    assert record.words == (0x1120, 0x3344, 0x5564)
-    assert encode_record(record.words) == data
+    assert record.values == (0x1120, 0x3344, 0x5564)
+    assert layout.encode(record.values) == data
 
 
 @given(form=FORMS, data=st.data(), group=st.booleans(), count=st.integers(1, 6))
@@ -59,13 +52,14 @@ def test_records_come_out_however_their_bytes_are_cut(
 ) -> None:
     words = st.tuples(*[WORDS] * FORMATS[form].words)
     sent = [(data.draw(words), data.draw(st.sampled_from(BIRDS))) for _ in range(count)]
-    wire = b"".join(encode_record(w, address=a if group else None) for w, a in sent)
-    assert len(wire) == count * record_size(FORMATS[form], group=group)
-    parser = RecordParser(FORMATS[form], addresses=BIRDS if group else None)
+    layout = FlockLayout(FORMATS[form], group)
+    wire = b"".join(layout.encode(w, a) for w, a in sent)
+    assert len(wire) == count * layout.size
+    parser = flock_parser(layout)
     cuts = sorted(data.draw(st.lists(st.integers(0, len(wire)), max_size=8)))
     parts = [wire[a:b] for a, b in zip([0, *cuts], [*cuts, len(wire)], strict=True)]
     found = [each for part in parts for each in parser.feed(part)] + parser.settle()
-    assert [(each.words, each.address) for each in found] == [
+    assert [(each.values, each.address) for each in found] == [
         (tuple(map(kept, w)), a if group else 0) for w, a in sent
     ]
     assert parser.dropped_bytes == 0
@@ -79,16 +73,15 @@ def test_with_bytes_lost_no_wrong_record_is_accepted_and_few_good_ones_are_misse
     size = FORMATS[form].words
     sent = [tuple(random.integers(-0x8000, 0x8000, size).tolist()) for _ in range(400)]
     birds = [BIRDS[index % len(BIRDS)] for index in range(len(sent))]
-    records = [
-        encode_record(w, address=b if group else None) for w, b in zip(sent, birds, strict=True)
-    ]
+    layout = FlockLayout(FORMATS[form], group)
+    records = [layout.encode(w, b) for w, b in zip(sent, birds, strict=True)]
     lost = [random.random(len(each)) < 0.005 for each in records]
     wire = b"".join(
         bytes(np.frombuffer(each, np.uint8)[~gone])
         for each, gone in zip(records, lost, strict=True)
     )
-    parser = RecordParser(FORMATS[form], addresses=BIRDS if group else None)
-    found = [(each.words, each.address) for each in (*parser.feed(wire), *parser.settle())]
+    parser = flock_parser(layout)
+    found = [(each.values, each.address) for each in (*parser.feed(wire), *parser.settle())]
     intact = [
         (tuple(map(kept, w)), b if group else 0)
         for w, b, gone in zip(sent, birds, lost, strict=True)
@@ -100,16 +93,18 @@ def test_with_bytes_lost_no_wrong_record_is_accepted_and_few_good_ones_are_misse
 
 
 def test_a_record_of_a_bird_that_is_not_there_is_refused_and_counted() -> None:
-    parser = RecordParser(FORMATS["pos"], addresses=[2, 3])
-    wire = b"".join(encode_record((4, 8, 12), address=each) for each in (2, 9, 3))
+    layout = FlockLayout(FORMATS["pos"], group=True)
+    parser = RecordParser(layout, [2, 3])
+    wire = b"".join(layout.encode((4, 8, 12), each) for each in (2, 9, 3))
     found = [*parser.feed(wire), *parser.settle()]
     assert [(each.address, each.missed) for each in found] == [(2, 0), (3, 1)]
     assert parser.wrong_addresses == 1
 
 
 def test_time_stamps_are_those_of_first_bytes() -> None:
-    parser = RecordParser(FORMATS["pos"], byte_s=0.001)
-    wire = encode_record((4, 8, 12)) * 2
+    layout = FlockLayout(FORMATS["pos"], group=False)
+    parser = flock_parser(layout, 0.001)
+    wire = layout.encode((4, 8, 12)) * 2
     found = [*parser.feed(wire[:8], 1.008), *parser.feed(wire[8:], 1.012), *parser.settle()]
     assert [each.stamp_s for each in found] == pytest.approx([1.001, 1.007])
 
@@ -118,11 +113,11 @@ def test_time_stamps_are_those_of_first_bytes() -> None:
 def test_whatever_bytes_come_nothing_is_raised_and_little_is_kept(
     data: list[bytes], form: str, group: bool
 ) -> None:
-    parser = RecordParser(FORMATS[form], addresses=BIRDS if group else None)
+    parser = flock_parser(layout := FlockLayout(FORMATS[form], group))
     for each in data:
         for record in parser.feed(each):
-            pose_of_words(record.words, FORMATS[form], Scaling())
-        assert len(parser._buffer) <= record_size(FORMATS[form], group=group)
+            pose_of_words(record.values, FORMATS[form], Scaling())
+        assert len(parser._buffer) <= layout.size
 
 
 @pytest.mark.parametrize("form", FORMATS)
@@ -139,10 +134,11 @@ def test_both_decoders_read_the_pose_that_was_encoded(
     scaling = Scaling(range_inch)
     shape = FORMATS[form]
     words = words_of_pose(position, rotation.as_quat(scalar_first=True), shape, scaling)
-    parser = RecordParser(shape, addresses=BIRDS)
-    (record,) = [*parser.feed(encode_record(words, address=5)), *parser.settle()]
-    pose = pose_of_words(record.words, shape, scaling)
-    other = decode(encode_record(words, address=5), form, group=True, range_inch=range_inch)
+    data = FlockLayout(shape, group=True).encode(words, 5)
+    found = FlockLayout(shape, group=True).decode(data, ended=True)
+    assert isinstance(found, tuple)
+    pose = pose_of_words(found[1], shape, scaling)
+    other = decode(data, form, group=True, range_inch=range_inch)
     assert pose is not None
     assert other.addresses.tolist() == [5]
     step_m = 8.0 / 32768.0 * range_inch * 0.0254

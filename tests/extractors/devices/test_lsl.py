@@ -6,12 +6,12 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 import tracked
-from lsl_loopback import LOOPBACK
+from lsl_loopback import LOOPBACK, LslOutlet
 
 from capar.model.errors import DeviceError
-from extractors.devices.lsl import LslOutlet, LslTracker
+from extractors.devices.lsl import LslTracker
 from extractors.devices.simulator import SmoothMotion
-from extractors.devices.tracker import Description, Frame, parse_address
+from extractors.devices.tracker import Frame, parse_address
 
 SENSORS = ("right_hand", "head", "mug")
 
@@ -36,7 +36,7 @@ def frames(count: int, start_s: float) -> list[Frame]:
 
 def sent(name: str, made: list[Frame]) -> tuple[LslTracker, list[Frame]]:
     """What arrives of some frames that are sent once the tracker listens."""
-    outlet = LslOutlet(name, Description("flock", "", SENSORS, 100.0))
+    outlet = LslOutlet(name, SENSORS, 100.0)
     with LslTracker(parse_address(f"lsl:{name}?timeout=10")) as tracker:
         for each in made:
             outlet.push(each)
@@ -78,7 +78,7 @@ def test_a_stream_that_nobody_sends_is_an_error_with_its_remedy() -> None:
 
 
 def test_a_stream_that_ends_is_said_and_is_no_fault_of_the_program() -> None:
-    outlet = LslOutlet("capar_test_ends", Description("flock", "", SENSORS, 100.0))
+    outlet = LslOutlet("capar_test_ends", SENSORS, 100.0)
     with LslTracker(parse_address("lsl:capar_test_ends?timeout=10")) as tracker:
         outlet.push(frames(1, 50.0)[0])
         tracked.take(tracker, 1)

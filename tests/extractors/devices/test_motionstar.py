@@ -7,13 +7,8 @@ import tracked
 from capar.model.errors import DeviceError
 from extractors.devices.bird_formats import FORMATS
 from extractors.devices.flock import MOST_HZ
-from extractors.devices.motionstar import (
-    MotionStarSimulator,
-    MotionStarTracker,
-    SentPacket,
-    ServerFaults,
-)
-from extractors.devices.simulator import SmoothMotion
+from extractors.devices.motionstar import MotionStarSimulator, MotionStarTracker
+from extractors.devices.simulator import Faults, Sent, SmoothMotion
 from extractors.devices.tracker import parse_address
 
 
@@ -24,7 +19,7 @@ def tracker(simulator: MotionStarSimulator, options: str) -> MotionStarTracker:
 @pytest.mark.parametrize("transport", ["tcp", "udp"])
 @pytest.mark.parametrize("form", FORMATS)
 def test_every_format_arrives_whole_at_the_highest_rate(form: str, transport: str) -> None:
-    log: list[SentPacket] = []
+    log: list[Sent] = []
     with MotionStarSimulator(SmoothMotion(12), log=log) as simulator:
         options = f"transport={transport}&format={form}&rate={MOST_HZ:g}"
         with tracker(simulator, options) as motionstar:
@@ -37,9 +32,9 @@ def test_every_format_arrives_whole_at_the_highest_rate(form: str, transport: st
 
 
 def test_lost_packets_are_counted_and_the_others_kept() -> None:
-    log: list[SentPacket] = []
+    log: list[Sent] = []
     with (
-        MotionStarSimulator(SmoothMotion(3), ServerFaults(0.1, seed=1), log) as simulator,
+        MotionStarSimulator(SmoothMotion(3), Faults(0.1, seed=1), log) as simulator,
         tracker(simulator, "birds=3&transport=udp") as motionstar,
     ):
         frames = tracked.take(motionstar, 100)
@@ -51,7 +46,7 @@ def test_lost_packets_are_counted_and_the_others_kept() -> None:
 
 def test_a_server_that_does_not_number_its_packets_is_told() -> None:
     with (
-        MotionStarSimulator(SmoothMotion(2), ServerFaults(numbered=False)) as simulator,
+        MotionStarSimulator(SmoothMotion(2), Faults(numbered=False)) as simulator,
         tracker(simulator, "birds=2") as motionstar,
     ):
         tracked.take(motionstar, 20)
@@ -62,7 +57,7 @@ def test_a_server_that_does_not_number_its_packets_is_told() -> None:
 
 @pytest.mark.parametrize("transport", ["tcp", "udp"])
 def test_a_pulled_plug_is_survived_and_told(transport: str) -> None:
-    log: list[SentPacket] = []
+    log: list[Sent] = []
     with (
         MotionStarSimulator(SmoothMotion(2), log=log) as simulator,
         tracker(simulator, f"birds=2&transport={transport}") as motionstar,
@@ -99,7 +94,7 @@ def test_a_server_with_other_birds_is_refused_with_those_it_has() -> None:
 
 def test_an_error_of_the_server_is_told_in_words() -> None:
     with (
-        MotionStarSimulator(SmoothMotion(1), ServerFaults(error=30)) as simulator,
+        MotionStarSimulator(SmoothMotion(1), Faults(error=30)) as simulator,
         pytest.raises(DeviceError, match=r"extended-range transmitter is not attached"),
     ):
         tracker(simulator, "birds=1").open()

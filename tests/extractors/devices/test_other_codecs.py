@@ -11,7 +11,8 @@ from extractors.devices import fastrak as fastrak
 from extractors.devices import motionstar as birdnet
 from extractors.devices import vrpn as vrpn
 from extractors.devices.bird_formats import FORMATS
-from extractors.devices.tracker import DeviceLostError
+from extractors.devices.records import RecordParser
+from extractors.devices.tracker import DeviceLostError, take_messages
 
 FORMS = st.sampled_from(sorted(FORMATS))
 BYTE = st.integers(0, 255)
@@ -103,19 +104,7 @@ def test_whatever_bytes_come_birdnet_raises_nothing_but_its_own_error(data: byte
 
 CENTIMETRES = st.floats(-300.0, 300.0, width=32)
 UNIT = st.floats(-1.0, 1.0, width=32)
-
-
-@st.composite
-def station_records(draw: st.DrawFn, form: str) -> fastrak.StationRecord:
-    values = [draw(CENTIMETRES) for _ in range(3)]
-    if form == "pos_ang":
-        values += [draw(st.floats(-180.0, 180.0, width=32)) for _ in range(3)]
-    if form == "pos_quat":
-        quaternion = [draw(UNIT) for _ in range(4)]
-        norm = math.hypot(*quaternion)
-        values += [each / norm for each in quaternion] if norm > 0.01 else [1.0, 0.0, 0.0, 0.0]
-    error = draw(st.sampled_from(" aA"))
-    return fastrak.StationRecord(draw(st.integers(1, 4)), error, tuple(values))
+DEGREES = st.floats(-180.0, 180.0, width=32)
 
 
 @pytest.mark.parametrize("binary", [False, True])
@@ -124,21 +113,28 @@ def station_records(draw: st.DrawFn, form: str) -> fastrak.StationRecord:
 def test_fastrak_records_come_out_however_their_bytes_are_cut(
     form: str, binary: bool, data: st.DataObject
 ) -> None:
-    sent = data.draw(st.lists(station_records(form), max_size=5))
-    wire = b"".join(fastrak.encode_record(each, form, binary=binary) for each in sent)
-    assert len(wire) == len(sent) * fastrak.record_size(form, binary=binary)
-    parser = fastrak.RecordParser(form, binary=binary)
+    kinds = {"pos": [], "pos_ang": [DEGREES] * 3, "pos_quat": [UNIT] * 4}[form]
+    records = st.tuples(st.integers(1, 4), st.tuples(*[CENTIMETRES] * 3, *kinds))
+    sent = []
+    for station, values in data.draw(st.lists(records, max_size=5)):
+        norm = math.hypot(*values[3:]) if form == "pos_quat" else 1.0
+        turned = [each / norm for each in values[3:]] if norm > 0.01 else [1.0, 0.0, 0.0, 0.0]
+        sent.append((station, [*values[:3], *turned]))
+    layout = fastrak.FastrakLayout(form, binary)
+    wire = b"".join(layout.encode(*each) for each in sent)
+    assert len(wire) == len(sent) * layout.size
+    parser = RecordParser(layout, range(1, 5))
     cut = data.draw(st.integers(0, len(wire)))
     found = [*parser.feed(wire[:cut]), *parser.feed(wire[cut:])]
-    assert [(each.station, each.error) for each in found] == [(e.station, e.error) for e in sent]
-    for one, other in zip(sent, found, strict=True):
-        assert other.values == pytest.approx(one.values, abs=0.0051 if not binary else 1e-4)
+    assert [each.address for each in found] == [station for station, _ in sent]
+    for (_, values), record in zip(sent, found, strict=True):
+        assert record.values == pytest.approx(values, abs=0.0051 if not binary else 1e-4)
     assert parser.dropped_bytes == 0
 
 
 def test_a_line_of_ascii_is_as_the_manual_prints_it() -> None:
-    record = fastrak.StationRecord(1, " ", (13.42, 0.18, -2.55, -41.2, 5.0, 170.01))
-    line = fastrak.encode_record(record, "pos_ang", binary=False)
+    values = (13.42, 0.18, -2.55, -41.2, 5.0, 170.01)
+    line = fastrak.FastrakLayout("pos_ang", binary=False).encode(1, values)
     assert line == b"01   13.42   0.18  -2.55 -41.20   5.00 170.01\r\n"
 
 
@@ -147,10 +143,11 @@ def test_a_line_of_ascii_is_as_the_manual_prints_it() -> None:
 def test_whatever_bytes_come_fastrak_raises_nothing_and_keeps_little(
     binary: bool, data: list[bytes]
 ) -> None:
-    parser = fastrak.RecordParser("pos_quat", binary=binary)
+    layout = fastrak.FastrakLayout("pos_quat", binary)
+    parser = RecordParser(layout, range(1, 5))
     for each in data:
         parser.feed(each)
-        assert len(parser._buffer) < fastrak.record_size("pos_quat", binary=binary)
+        assert len(parser._buffer) < layout.size
 
 
 INT = st.integers(-(2**31), 2**31 - 1)
@@ -166,8 +163,10 @@ def test_vrpn_messages_come_out_however_their_bytes_are_cut(
     wire = b"".join(each.encode() for each in sent)
     assert len(wire) % 8 == 0
     cut = data.draw(st.integers(0, len(wire)))
-    parser = vrpn.MessageParser()
-    assert [*parser.feed(wire[:cut]), *parser.feed(wire[cut:])] == sent
+    buffer = bytearray(wire[:cut])
+    found = list(take_messages(buffer, vrpn.decode_message))
+    buffer += wire[cut:]
+    assert [*found, *take_messages(buffer, vrpn.decode_message)] == sent
 
 
 @given(st.text(max_size=40).filter(lambda text: "\0" not in text))
@@ -177,23 +176,24 @@ def test_a_vrpn_name_is_decoded_as_it_was_encoded(name: str) -> None:
 
 @given(INT, st.tuples(*[st.floats(allow_nan=False)] * 7))
 def test_a_vrpn_pose_is_decoded_as_it_was_encoded(sensor: int, values: tuple[float, ...]) -> None:
-    pose = vrpn.SensorPose(sensor, values[:3], values[3:])
-    assert len(pose.encode()) == 64
-    assert vrpn.decode_pose(pose.encode()) == pose
+    payload = vrpn.encode_pose(sensor, values[:3], values[3:])
+    assert len(payload) == 64
+    assert vrpn.decode_pose(payload) == (sensor, values[:3], values[3:])
 
 
 def test_a_server_of_another_kind_is_told_by_its_first_bytes() -> None:
-    vrpn.check_cookie(vrpn.cookie())
-    assert len(vrpn.cookie()) == 24
+    vrpn.check_cookie(vrpn.COOKIE)
+    assert len(vrpn.COOKIE) == 24
     with pytest.raises(DeviceLostError, match=r"no VRPN 7 server"):
         vrpn.check_cookie(b"HTTP/1.1 400 Bad Request")
 
 
 @given(st.lists(st.binary(max_size=100), max_size=10))
 def test_whatever_bytes_come_vrpn_raises_nothing_but_its_own_error(data: list[bytes]) -> None:
-    parser = vrpn.MessageParser()
+    buffer = bytearray()
     with contextlib.suppress(DeviceLostError):
         for each in data:
-            for message in parser.feed(each):
+            buffer += each
+            for message in take_messages(buffer, vrpn.decode_message):
                 vrpn.decode_name(message.payload)
                 vrpn.decode_pose(message.payload)

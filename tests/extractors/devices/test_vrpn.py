@@ -8,9 +8,9 @@ import pytest
 import tracked
 
 from capar.model.errors import DeviceError
-from extractors.devices.simulator import SmoothMotion
+from extractors.devices.simulator import Sent, SmoothMotion
 from extractors.devices.tracker import parse_address
-from extractors.devices.vrpn import SentPose, VrpnSimulator, VrpnTracker
+from extractors.devices.vrpn import VrpnSimulator, VrpnTracker, decode_pose
 
 
 def tracker(simulator: VrpnSimulator, options: str) -> VrpnTracker:
@@ -18,7 +18,7 @@ def tracker(simulator: VrpnSimulator, options: str) -> VrpnTracker:
 
 
 def test_every_pose_arrives() -> None:
-    log: list[SentPose] = []
+    log: list[Sent] = []
     with VrpnSimulator(SmoothMotion(4), 120.0, log) as simulator:
         with tracker(simulator, "sensors=4") as vrpn:
             frames = tracked.take(vrpn, 150)
@@ -31,7 +31,7 @@ def test_every_pose_arrives() -> None:
 
 
 def test_a_lost_connection_is_survived_and_told() -> None:
-    log: list[SentPose] = []
+    log: list[Sent] = []
     with (
         VrpnSimulator(SmoothMotion(2), 100.0, log) as simulator,
         tracker(simulator, "sensors=2") as vrpn,
@@ -48,7 +48,7 @@ def test_a_lost_connection_is_survived_and_told() -> None:
 
 @pytest.mark.parametrize("up", ["x", "y", "-z"])
 def test_the_axis_that_is_up_becomes_z(up: str) -> None:
-    log: list[SentPose] = []
+    log: list[Sent] = []
     with (
         VrpnSimulator(SmoothMotion(1), 100.0, log) as simulator,
         tracker(simulator, f"up={up}") as vrpn,
@@ -56,7 +56,8 @@ def test_the_axis_that_is_up_becomes_z(up: str) -> None:
         frames = tracked.take(vrpn, 10)
     axis, sign = "xyz".index(up[-1]), -1.0 if up.startswith("-") else 1.0
     heights = [each.positions[0, 2] for each in frames]
-    sent = [sign * each.pose.position[axis] for each in log[: len(heights)]]
+    poses = [decode_pose(each.data) for each in log[: len(heights)]]
+    sent = [sign * pose[1][axis] for pose in poses if pose is not None]
     assert heights == pytest.approx(sent)
 
 
