@@ -154,6 +154,7 @@ class Hand:
         along: float = 0.0,
         aside: Vector = (0.0, 0.0, 0.0),
         when: float | None = None,
+        hold: float = 0.0,
     ) -> None:
         """Go and touch a site of a thing, or a point so far beside it [m], where it will be."""
         goal = self.place(thing, side, up=up, fingers=fingers, along=along, when=when)
@@ -161,6 +162,8 @@ class Hand:
         self.fly(goal, duration, arrive=speed)
         self.meet(thing)
         self.step(name, thing, *others)
+        if hold:
+            self.hold(hold, thing)
 
     def leave(
         self,
@@ -459,3 +462,20 @@ def _unhurried(controls: np.ndarray) -> float:
 def _speed(share: float) -> float:
     tau = min(max(share, 0.0), 1.0)
     return 30.0 * tau**2 * (1.0 - tau) ** 2
+
+
+def travel(
+    hand: Hand,
+    name: str,
+    by: Vector,
+    duration: float,
+    *things: Thing,
+    depart: float = 0.0,
+    arrive: float = 0.0,
+    hold: float = 0.0,
+) -> None:
+    """One step straight from and to rest or with a speed [m/s], and a hold if that has a time."""
+    hand.move(by, duration, depart=depart, arrive=arrive)
+    hand.step(name, *things)
+    if hold:
+        hand.hold(hold, *things)

@@ -10,6 +10,7 @@ from typing import Any
 from capar.model.capture import Capture
 from scenes.hands.expectation import Expectation
 from scenes.hands.stage import Noise, Stage
+from scenes.hands.things import Thing
 
 
 @dataclass(frozen=True)
@@ -69,3 +70,9 @@ def performer(
     """Say who performs, at which table, and how they stand in the world."""
     stage.height, stage.yaw_deg, stage.offset = height, yaw_deg, offset
     stage.size, stage.agent = size, agent
+
+
+def at_table(s: Stage, *, depth: float = 0.7, width: float = 1.4, **who: Any) -> Thing:
+    """Say who performs, as above, and put the table before them."""
+    performer(s, **who)
+    return s.table(depth, width)

@@ -5,7 +5,7 @@ import numpy as np
 from scenes.hands import shapes
 from scenes.hands.paths import AHEAD, UP, facing, pose
 from scenes.hands.performer import GRAVITY, PRESS
-from scenes.hands.scene import performer
+from scenes.hands.scene import at_table, performer
 from scenes.hands.stage import Stage
 
 SLOWING = 3.5
@@ -14,10 +14,8 @@ SLOWING = 3.5
 
 def hit_the_table(s: Stage) -> None:
     """The flat hand comes down on the table at more than a metre a second and stays a while."""
-    performer(s, yaw_deg=22)
-    table = s.table(depth=0.6, width=0.5)
-    right = s.right(home=(0.12, -0.3, s.height + 0.25))
-    right.idle(0.2)
+    table = at_table(s, yaw_deg=22, depth=0.6, width=0.5)
+    right = s.right(home=(0.12, -0.3, s.height + 0.25), idle=0.2)
     right.reach(table, "+z", 0.7, up=1.0, speed=1.2, name="Hit")
     right.hold(0.6, table)
     right.leave(0.9)
@@ -26,11 +24,9 @@ def hit_the_table(s: Stage) -> None:
 
 def hit_a_board(s: Stage) -> None:
     """The left palm hits an upright board."""
-    performer(s, height=0.9, yaw_deg=-145, size=1.05)
-    s.table()
+    at_table(s, height=0.9, yaw_deg=-145, size=1.05)
     board = s.put("board", shapes.box(0.03, 0.5, 0.5, "board"), (0.7, 0.1), tag="fixed")
-    left = s.left()
-    left.idle(0.2)
+    left = s.left(idle=0.2)
     left.reach(board, "-x", 0.7, fingers=UP, speed=1.3, name="Hit")
     left.hold(0.5, board)
     left.leave(0.9)
@@ -39,10 +35,8 @@ def hit_a_board(s: Stage) -> None:
 
 def tap_twice(s: Stage) -> None:
     """The hand slaps the table, rests above it and slaps it again."""
-    performer(s, yaw_deg=-100)
-    table = s.table(depth=0.6, width=0.5)
-    right = s.right(home=(0.12, -0.3, s.height + 0.3))
-    right.idle(0.2)
+    table = at_table(s, yaw_deg=-100, depth=0.6, width=0.5)
+    right = s.right(home=(0.12, -0.3, s.height + 0.3), idle=0.2)
     right.reach(table, "+z", 0.7, up=1.0, speed=1.1, name="Hit")
     right.hold(0.4, table)
     right.leave(0.6, to=(0.6, 0.0, s.height + 0.27), name="Withdraw")
@@ -59,8 +53,7 @@ def hit_a_block_away(s: Stage) -> None:
     s.contact_minimum_s = 0.0
     s.table()
     toy = s.put("block", shapes.box(0.1, 0.1, 0.12, "block"), (0.5, -0.1))
-    right = s.right(home=(0.2, -0.45, s.height + 0.15))
-    right.idle(0.2)
+    right = s.right(home=(0.2, -0.45, s.height + 0.15), idle=0.2)
     right.reach(toy, "-y", 0.7, speed=1.2, name="HitAway")
     start, contact, speed = right.clock, 0.02, 1.0
 
@@ -85,8 +78,7 @@ def palm_up(place: np.ndarray) -> np.ndarray:
 
 def throw_a_bag(s: Stage) -> None:
     """A bean bag on the palm is thrown up and ahead and lands on the table."""
-    performer(s, yaw_deg=-5)
-    s.table(depth=1.2)
+    at_table(s, yaw_deg=-5, depth=1.2)
     bag = s.put("bag", shapes.box(0.07, 0.07, 0.03, "bag"), (0.2, -0.25, s.height + 0.15))
     right = s.right()
     right.begin_at(bag, "-z", up=0.0, fingers=AHEAD)
@@ -104,8 +96,7 @@ def throw_a_bag(s: Stage) -> None:
 
 def throw_and_catch(s: Stage) -> None:
     """The right hand tosses a bean bag, and the left hand catches it and keeps it."""
-    performer(s, height=0.8, yaw_deg=220)
-    s.table()
+    at_table(s, height=0.8, yaw_deg=220)
     bag = s.put("bag", shapes.box(0.07, 0.07, 0.03, "bag"), (0.35, -0.3, s.height + 0.15))
     right, left = s.right(), s.left(home=(0.2, 0.3, s.height + 0.2))
     right.begin_at(bag, "-z", up=0.0, fingers=AHEAD)

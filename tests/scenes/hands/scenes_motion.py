@@ -6,23 +6,19 @@ import numpy as np
 
 from scenes.hands import shapes
 from scenes.hands.paths import AHEAD, UP
-from scenes.hands.performer import PRESS, Hand
-from scenes.hands.scene import performer
+from scenes.hands.performer import PRESS, Hand, travel
+from scenes.hands.scene import at_table, performer
 from scenes.hands.scenes_place import cup, fetch, finish
 from scenes.hands.stage import Stage
 
 
 def turn_in_the_air(s: Stage) -> None:
     """A mug is lifted, held, turned by eighty degrees about its upright axis and kept."""
-    performer(s, yaw_deg=77)
-    s.table()
+    at_table(s, yaw_deg=77)
     mug = cup(s, (0.5, -0.05))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, mug, "-y", 0.9, 0.6, 0.3)
-    right.move((0.0, 0.0, 0.2), 0.8)
-    right.step("Lift", mug)
-    right.hold(0.5, mug)
+    travel(right, "Lift", (0.0, 0.0, 0.2), 0.8, mug, hold=0.5)
     right.spin((0.5, -0.05, 0.0), UP, 80.0, 1.1)
     right.step("Turn", mug)
     right.hold(0.6, mug)
@@ -30,15 +26,11 @@ def turn_in_the_air(s: Stage) -> None:
 
 def tilt_in_the_air(s: Stage) -> None:
     """A box is lifted, held, tilted by fifty degrees to the left and kept so."""
-    performer(s, height=0.82, yaw_deg=-33)
-    s.table()
+    at_table(s, height=0.82, yaw_deg=-33)
     box = s.put("box", shapes.box(0.1, 0.08, 0.14), (0.5, -0.1))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, box, "-y", 0.9, 0.6, 0.4)
-    right.move((0.0, 0.0, 0.22), 0.9)
-    right.step("Lift", box)
-    right.hold(0.5, box)
+    travel(right, "Lift", (0.0, 0.0, 0.22), 0.9, box, hold=0.5)
     right.spin((0.5, -0.1, s.height + 0.3), AHEAD, -50.0, 1.0)
     right.step("Tilt", box)
     right.hold(0.7, box)
@@ -46,20 +38,15 @@ def tilt_in_the_air(s: Stage) -> None:
 
 def pour_into_a_bowl(s: Stage) -> None:
     """A bottle is lifted, tipped over a bowl and back, and put down."""
-    performer(s, yaw_deg=-12)
-    table, flask = s.table(), s.put("bottle", shapes.bottle(), (0.5, -0.2))
+    table, flask = at_table(s, yaw_deg=-12), s.put("bottle", shapes.bottle(), (0.5, -0.2))
     s.put("bowl", shapes.vessel(0.085, 0.06, "bowl"), (0.5, -0.02))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, flask, "-y", 0.9, 0.4, 0.3)
-    right.move((0.0, 0.0, 0.2), 0.8)
-    right.step("Lift", flask)
-    right.hold(0.4, flask)
+    travel(right, "Lift", (0.0, 0.0, 0.2), 0.8, flask, hold=0.4)
     right.dip((0.5, -0.2, s.height + 0.28), AHEAD, -105.0, 1.8)
     right.step("Pour", flask)
     right.hold(0.4, flask)
-    right.move((0.0, 0.0, -0.2), 0.9)
-    right.step("Lower", flask, table)
+    travel(right, "Lower", (0.0, 0.0, -0.2), 0.9, flask, table)
     finish(right, flask, table, 0.3, 0.9)
 
 
@@ -67,33 +54,26 @@ def shake_a_bottle(s: Stage) -> None:
     """A bottle is lifted, shaken up and down six times and put back."""
     performer(s, height=0.95, yaw_deg=175, size=1.04)
     table, flask = s.table(), s.put("bottle", shapes.bottle(), (0.55, -0.15))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, flask, "-y", 0.9, 0.4, 0.3)
-    right.move((0.0, 0.0, 0.22), 0.8)
-    right.step("Lift", flask)
-    right.hold(0.5, flask)
+    travel(right, "Lift", (0.0, 0.0, 0.22), 0.8, flask, hold=0.5)
     right.swing((0.0, 0.0, 0.04), 3.0, 6)
     right.step("Shake", flask)
     right.hold(0.5, flask)
-    right.move((0.0, 0.0, -0.22), 0.9)
-    right.step("Lower", flask, table)
+    travel(right, "Lower", (0.0, 0.0, -0.22), 0.9, flask, table)
     finish(right, flask, table, 0.3, 0.9)
 
 
 def stir_in_a_bowl(s: Stage) -> None:
     """A spoon held above a bowl is lowered to its bottom and goes round four times."""
-    performer(s, yaw_deg=65)
-    s.table()
+    at_table(s, yaw_deg=65)
     bowl = s.put("bowl", shapes.vessel(0.1, 0.07, "bowl"), (0.5, -0.1))
     spoon = s.put("spoon", shapes.rod(0.22, 0.005), (0.53, -0.1, s.height + 0.155))
     right = s.right(shapes.gripping_hand(0.05, 0.04))
     right.begin_at(spoon, "+z", up=1.0, fingers=AHEAD)
     right.take(spoon)
     right.hold(0.5, spoon)
-    right.move((0.0, 0.0, -0.15), 0.8)
-    right.step("Lower", spoon, bowl)
-    right.hold(0.3, spoon, bowl)
+    travel(right, "Lower", (0.0, 0.0, -0.15), 0.8, spoon, bowl, hold=0.3)
     right.circle(0.035, 1.2, 4)
     right.step("Stir", spoon, bowl)
     right.hold(0.6, spoon, bowl)
@@ -119,19 +99,16 @@ def drink(s: Stage, *, hold: float, tilt_deg: float) -> Hand:
     table, head = s.table(), s.head()
     start = (0.5, -0.1, s.height)
     mug = cup(s, start)
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     right.reach(mug, "-y", 0.9, up=0.6, along=-0.025)
     if hold:
         right.hold(hold, mug)
     right.take(mug)
     face = head.body.first[:3, 3] + (0.095 * s.size, 0.0, 0.0)
     goal = np.add(face, (0.042 - PRESS, 0.0, -0.1))
-    right.move(goal - start, 1.1, arrive=0.12)
-    right.step("MoveObjTo", mug, head)
+    travel(right, "MoveObjTo", goal - start, 1.1, mug, head, arrive=0.12)
     right.dip(face, (0.0, 1.0, 0.0), -tilt_deg, 1.2)
     right.step("Drink", mug, head)
-    right.move(start - goal, 1.1, depart=0.12)
-    right.step("MoveObjTo", mug, table)
+    travel(right, "MoveObjTo", start - goal, 1.1, mug, table, depart=0.12)
     finish(right, mug, table, 0.5, 0.9)
     return right

@@ -2,8 +2,8 @@
 
 from scenes.hands import shapes
 from scenes.hands.paths import UP
-from scenes.hands.performer import Hand
-from scenes.hands.scene import performer
+from scenes.hands.performer import Hand, travel
+from scenes.hands.scene import at_table, performer
 from scenes.hands.scenes_place import brick, cup, fetch, finish
 from scenes.hands.stage import Stage, other_names
 from scenes.hands.things import Thing
@@ -29,19 +29,14 @@ def both_leave(hands: list[Hand], duration: float) -> None:
 
 def lift_a_box_with_both_hands(s: Stage) -> None:
     """A large box is lifted by both hands, held for half a second and put back."""
-    performer(s, yaw_deg=30)
-    table, box = s.table(), s.put("box", shapes.box(0.25, 0.35, 0.2), (0.55, 0.0))
+    table, box = at_table(s, yaw_deg=30), s.put("box", shapes.box(0.25, 0.35, 0.2), (0.55, 0.0))
     hands = both_reach(s, box, 0.9, 0.5, 0.4)
     right, left = hands
     since = len(right.steps)
     left.join(box)
     right.take(box)
-    right.move((0.0, 0.0, 0.25), 0.9)
-    right.step("Lift", box)
-    right.hold(0.6, box)
-    right.move((0.0, 0.0, -0.25), 1.0)
-    right.step("Lower", box, table)
-    right.hold(0.4, box, table)
+    travel(right, "Lift", (0.0, 0.0, 0.25), 0.9, box, hold=0.6)
+    travel(right, "Lower", (0.0, 0.0, -0.25), 1.0, box, table, hold=0.4)
     left.part(right, since)
     both_leave(hands, 0.9)
 
@@ -62,8 +57,7 @@ def move_a_box_with_both_hands(s: Stage) -> None:
 
 def carry_a_tray_with_cups(s: Stage) -> None:
     """Both hands carry a tray with two cups on it to the left."""
-    performer(s, yaw_deg=160)
-    table, tray = s.table(), s.put("tray", shapes.tray(0.28, 0.36), (0.55, -0.2))
+    table, tray = at_table(s, yaw_deg=160), s.put("tray", shapes.tray(0.28, 0.36), (0.55, -0.2))
     cups = [
         s.put(name, shapes.vessel(0.035, 0.08, "cup"), (0.55, y, s.height + 0.008))
         for name, y in (("first_cup", -0.28), ("second_cup", -0.12))
@@ -89,43 +83,32 @@ def carry_a_carton_with_a_ball(s: Stage) -> None:
     since = len(right.steps)
     left.join(carton)
     right.take(carton, ball)
-    right.move((0.0, 0.0, 0.2), 0.9)
-    right.step("Lift", carton)
-    right.hold(0.5, carton)
-    right.move((0.35, 0.0, 0.0), 1.1)
-    right.step("Carry", carton)
-    right.hold(0.4, carton)
-    right.move((0.0, 0.0, -0.2), 0.9)
-    right.step("Lower", carton, table)
-    right.hold(0.4, carton, table)
+    travel(right, "Lift", (0.0, 0.0, 0.2), 0.9, carton, hold=0.5)
+    travel(right, "Carry", (0.35, 0.0, 0.0), 1.1, carton, hold=0.4)
+    travel(right, "Lower", (0.0, 0.0, -0.2), 0.9, carton, table, hold=0.4)
     left.part(right, since)
     both_leave(hands, 1.0)
 
 
 def push_with_both_hands(s: Stage) -> None:
     """A wide box is pushed away by both palms behind it."""
-    performer(s, yaw_deg=85)
-    table, box = s.table(), s.put("box", shapes.box(0.2, 0.5, 0.18), (0.5, 0.0))
+    table, box = at_table(s, yaw_deg=85), s.put("box", shapes.box(0.2, 0.5, 0.18), (0.5, 0.0))
     hands = [s.right(), s.left()]
     for hand, aside in zip(hands, (-0.13, 0.13), strict=True):
         hand.idle(0.2)
-        hand.reach(box, "-x", 0.8, fingers=UP, aside=(0.0, aside, 0.0))
-        hand.hold(0.4, box)
+        hand.reach(box, "-x", 0.8, fingers=UP, aside=(0.0, aside, 0.0), hold=0.4)
     right, left = hands
     since = len(right.steps)
     left.join(box)
     right.take(box)
-    right.move((0.25, 0.0, 0.0), 1.0)
-    right.step("Push", box, table)
-    right.hold(0.4, box, table)
+    travel(right, "Push", (0.25, 0.0, 0.0), 1.0, box, table, hold=0.4)
     left.part(right, since)
     both_leave(hands, 0.9)
 
 
 def two_things_at_once(s: Stage) -> None:
     """The right hand moves a mug, and the left a block, at the same time."""
-    performer(s, yaw_deg=-65)
-    table, mug, toy = s.table(), cup(s, (0.5, -0.45)), brick(s, (0.5, 0.45))
+    table, mug, toy = at_table(s, yaw_deg=-65), cup(s, (0.5, -0.45)), brick(s, (0.5, 0.45))
     right, left = s.right(), s.left()
     right.idle(0.2)
     fetch(right, mug, "-y", 0.9, 0.6, 0.3)
@@ -139,8 +122,7 @@ def two_things_at_once(s: Stage) -> None:
 
 def steady_a_carton_and_fill_it(s: Stage) -> None:
     """The left hand steadies a carton while the right hand puts a ball into it."""
-    performer(s, height=0.78, yaw_deg=210)
-    s.table()
+    at_table(s, height=0.78, yaw_deg=210)
     carton = s.put("carton", shapes.carton(0.3, 0.28, 0.13), (0.6, 0.15))
     ball = s.put("ball", shapes.ball(0.035), (0.5, -0.25, s.height + 0.035))
     left, right = s.left(), s.right(shapes.gripping_hand(0.11, 0.05))
@@ -157,8 +139,7 @@ def steady_a_carton_and_fill_it(s: Stage) -> None:
 
 def one_hand_acts_and_one_rests(s: Stage) -> None:
     """The right hand moves a block; the left hand rests in the air all the while."""
-    performer(s, height=0.75, yaw_deg=-125)
-    table, toy = s.table(), brick(s, (0.45, -0.3))
+    table, toy = at_table(s, height=0.75, yaw_deg=-125), brick(s, (0.45, -0.3))
     right, left = s.right(), s.left()
     right.idle(0.2)
     fetch(right, toy, "-y", 0.9, 0.7, 0.3)
@@ -169,22 +150,18 @@ def one_hand_acts_and_one_rests(s: Stage) -> None:
 
 def one_hand_lies_and_one_lifts(s: Stage) -> None:
     """The left hand lies on the table throughout; the right hand lifts a mug and keeps it."""
-    performer(s, height=0.74, yaw_deg=140)
-    table, mug = s.table(), cup(s, (0.5, -0.2))
+    table, mug = at_table(s, height=0.74, yaw_deg=140), cup(s, (0.5, -0.2))
     right, left = s.right(), s.left()
     left.begin_at(table, "+z", up=1.0, fingers=(1.0, 0.0, 0.0), aside=(-0.15, 0.35, 0.0))
     right.idle(0.2)
     fetch(right, mug, "-y", 0.9, 0.6, 0.4)
-    right.move((0.0, 0.0, 0.2), 0.8)
-    right.step("Lift", mug)
-    right.hold(1.0, mug)
+    travel(right, "Lift", (0.0, 0.0, 0.2), 0.8, mug, hold=1.0)
     left.hold(right.clock, table)
 
 
 def push_and_lift_at_once(s: Stage) -> None:
     """The left hand pushes a box away while the right hand takes a mug over to its side."""
-    performer(s, yaw_deg=0, size=1.02)
-    table, mug = s.table(), cup(s, (0.75, -0.5))
+    table, mug = at_table(s, yaw_deg=0, size=1.02), cup(s, (0.75, -0.5))
     box = s.put("box", shapes.box(0.14, 0.18, 0.14), (0.48, 0.35))
     right, left = s.right(), s.left()
     right.idle(0.2)
@@ -192,20 +169,16 @@ def push_and_lift_at_once(s: Stage) -> None:
     right.lift_carry_lower(mug, table, up=0.15, by=(-0.2, 0.35), down=0.15)
     finish(right, mug, table, 0.3, 0.9)
     left.idle(0.2)
-    left.reach(box, "-x", 0.9, fingers=UP)
-    left.hold(0.6, box)
+    left.reach(box, "-x", 0.9, fingers=UP, hold=0.6)
     left.take(box)
-    left.move((0.3, 0.0, 0.0), 1.1)
-    left.step("Push", box, table)
-    left.hold(1.1, box, table)
+    travel(left, "Push", (0.3, 0.0, 0.0), 1.1, box, table, hold=1.1)
     left.leave(1.0)
     left.idle(0.2)
 
 
 def raise_together(s: Stage) -> None:
     """Both hands hold a box in the air from the first frame, raise it and keep it."""
-    performer(s, height=0.7, yaw_deg=55)
-    s.table()
+    at_table(s, height=0.7, yaw_deg=55)
     box = s.put("box", shapes.box(0.2, 0.24, 0.16), (0.5, 0.0, s.height + 0.1))
     right, left = s.right(), s.left()
     for hand, side in ((right, "-y"), (left, "+y")):
@@ -213,9 +186,7 @@ def raise_together(s: Stage) -> None:
     left.join(box)
     right.take(box)
     right.hold(0.6, box)
-    right.move((0.0, 0.0, 0.35), 1.1)
-    right.step("Raise", box)
-    right.hold(0.7, box)
+    travel(right, "Raise", (0.0, 0.0, 0.35), 1.1, box, hold=0.7)
     left.part(right, 0)
 
 
@@ -240,8 +211,7 @@ def pass_over(s: Stage, giver: Hand, taker: Hand) -> None:
     giver.begin_at(ball, sides[0], up=0.5, fingers=(1.0, 0.0, 0.0))
     giver.take(ball)
     giver.hold(0.4, ball)
-    giver.move((0.0, -sign * 0.28, 0.0), 0.8)
-    giver.step("Carry", ball)
+    travel(giver, "Carry", (0.0, -sign * 0.28, 0.0), 0.8, ball)
     giver.clock += 0.3
     taker.idle(0.2)
     taker.reach(ball, sides[1], giver.clock - 0.2, name="Receive", when=giver.clock)
@@ -252,8 +222,7 @@ def pass_over(s: Stage, giver: Hand, taker: Hand) -> None:
     giver.idle(0.2)
     taker.hold(0.4, ball)
     taker.take(ball)
-    taker.move((0.0, 0.0, -0.22), 0.8)
-    taker.step("Lower", ball, table)
+    travel(taker, "Lower", (0.0, 0.0, -0.22), 0.8, ball, table)
     taker.hold(giver.clock - taker.clock, ball, table)
     giver.alternative = other_names(giver, Give="ResumePosture")
     taker.alternative = other_names(taker, Receive="Reach")

@@ -95,22 +95,33 @@ class Stage:
         form = shapes.Form("chest", (shapes.block(low, high),))
         return self.put("chest", form, (-0.06, 0.0, self.height + 0.18), tag="self")
 
-    def hand(self, side: str, form: shapes.Form | None = None, home: Vector | None = None) -> Hand:
-        """A hand of the performer at its home posture."""
+    def hand(
+        self,
+        side: str,
+        form: shapes.Form | None = None,
+        home: Vector | None = None,
+        idle: float = 0.0,
+    ) -> Hand:
+        """A hand of the performer at its home posture, where it stays for a while [s]."""
         sign = -1.0 if side == "right" else 1.0
         shape = (form or shapes.flat_hand(side)).scaled(self.size)
         place = home or (0.12, sign * 0.28 * self.size, self.height + 0.12)
         hand = Hand.at_home(f"{side}_hand", side, shape, place)
+        hand.idle(idle)
         self.hands.append(hand)
         return hand
 
-    def right(self, form: shapes.Form | None = None, home: Vector | None = None) -> Hand:
+    def right(
+        self, form: shapes.Form | None = None, home: Vector | None = None, idle: float = 0.0
+    ) -> Hand:
         """The right hand."""
-        return self.hand("right", form, home)
+        return self.hand("right", form, home, idle)
 
-    def left(self, form: shapes.Form | None = None, home: Vector | None = None) -> Hand:
+    def left(
+        self, form: shapes.Form | None = None, home: Vector | None = None, idle: float = 0.0
+    ) -> Hand:
         """The left hand."""
-        return self.hand("left", form, home)
+        return self.hand("left", form, home, idle)
 
     @property
     def duration_s(self) -> float:

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from scenes.hands import shapes
 from scenes.hands.paths import AHEAD, LEFTWARD, UP
-from scenes.hands.performer import EASE, PRESS, Hand
-from scenes.hands.scene import performer
+from scenes.hands.performer import EASE, PRESS, Hand, travel
+from scenes.hands.scene import at_table, performer
 from scenes.hands.scenes_place import claw, fetch, finish
 from scenes.hands.scenes_two_hands import both_leave, both_reach
 from scenes.hands.stage import Stage, other_names
@@ -23,20 +23,17 @@ from scenes.objects.builders import (
     pillar,
     seize,
     shelf,
-    travel,
 )
 from scenes.objects.scenes_containers import FINGERS_M, PALM_M, also, hold_both
 
 
 def plum_from_a_bucket_to_a_basin(s: Stage) -> None:
     """A plum is taken straight up out of a bucket and laid in a wide basin, slowly."""
-    performer(s, height=0.62, yaw_deg=33, size=0.97)
-    s.table()
+    at_table(s, height=0.62, yaw_deg=33, size=0.97)
     builders.bucket(s, (0.5, -0.28), height=0.08)
     fruit = plum(s, (0.5, -0.28, s.height + 0.006))
     basin = builders.basin(s, (0.62, 0.25))
-    right = s.right(claw())
-    right.idle(0.25)
+    right = s.right(claw(), idle=0.25)
     fetch(right, fruit, "+z", 1.3, 1.0, 0.5)
     paused(
         right,
@@ -53,12 +50,10 @@ def plum_from_a_bucket_to_a_basin(s: Stage) -> None:
 
 def roll_put_on_its_stand(s: Stage) -> None:
     """A paper roll is brought over a pole and lowered around it onto the foot of the stand."""
-    performer(s, height=0.8, yaw_deg=-72)
-    s.table()
+    at_table(s, height=0.8, yaw_deg=-72)
     stand = s.put("stand", builders.roll_stand(), (0.6, 0.22), tag="fixed")
     roll = s.put("roll", builders.paper_roll(), (0.52, -0.28))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, roll, "-y", 0.9, 0.5, 0.4)
     paused(right, roll, stand, up=0.3, by=(0.08, 0.5), down=0.285, holds=(0.3, 0.5))
     finish(right, roll, stand, 0.4, 1.0)
@@ -66,31 +61,25 @@ def roll_put_on_its_stand(s: Stage) -> None:
 
 def roll_taken_off_its_stand(s: Stage) -> None:
     """The left hand draws a paper roll up from its pole and keeps it in the air."""
-    performer(s, height=0.7, yaw_deg=128, size=1.05, agent="tall_woman")
-    s.table()
+    at_table(s, height=0.7, yaw_deg=128, size=1.05, agent="tall_woman")
     s.put("stand", builders.roll_stand(), (0.55, 0.12), tag="fixed")
     roll = s.put("roll", builders.paper_roll(), (0.55, 0.12, s.height + 0.015))
-    left = s.left()
-    left.idle(0.15)
+    left = s.left(idle=0.15)
     fetch(left, roll, "+y", 0.8, 0.6, 0.0)
-    travel(left, "Lift", (0.0, 0.0, 0.31), 1.0, roll)
-    left.hold(0.9, roll)
+    travel(left, "Lift", (0.0, 0.0, 0.31), 1.0, roll, hold=0.9)
 
 
 def book_between_two_books(s: Stage) -> None:
     """A book is lowered into the gap between two others on a rack's lowest board."""
-    performer(s, height=0.66, yaw_deg=15)
-    s.table()
+    at_table(s, height=0.66, yaw_deg=15)
     rack = s.put(
         "rack", builders.open_shelves(0.26, 0.4, (0.03,)), (0.6, 0.2, s.height), tag="fixed"
     )
     for name, y in (("red_book", 0.12), ("blue_book", 0.2)):
         s.put(name, shapes.box(0.16, 0.025, 0.2, "book"), (0.72, y, s.height + 0.03))
     book = s.put("green_book", shapes.box(0.15, 0.03, 0.27, "book"), (0.5, -0.28))
-    right = s.right(shapes.gripping_hand(0.05, 0.04))
-    right.idle(0.2)
-    right.reach(book, "+z", 0.9, up=1.0, fingers=LEFTWARD)
-    right.hold(0.3, book)
+    right = s.right(shapes.gripping_hand(0.05, 0.04), idle=0.2)
+    right.reach(book, "+z", 0.9, up=1.0, fingers=LEFTWARD, hold=0.3)
     right.take(book)
     paused(right, book, rack, up=0.33, by=(0.22, 0.44), down=0.3, holds=(0.0, 0.4))
     finish(right, book, rack, 0.3, 1.2)
@@ -98,30 +87,26 @@ def book_between_two_books(s: Stage) -> None:
 
 def spoon_into_a_holder(s: Stage) -> None:
     """A long spoon that is held in the air is stood in a tall holder and let go of."""
-    performer(s, height=0.77, yaw_deg=-160)
-    s.table()
+    at_table(s, height=0.77, yaw_deg=-160)
     pot = s.put("holder", shapes.vessel(0.03, 0.16, "holder", 0.004), (0.55, 0.1))
     spoon = s.put("spoon", builders.tall_spoon(), (0.55, -0.18, s.height + 0.224))
     right = s.right(shapes.gripping_hand(0.05, 0.04))
     right.begin_at(spoon, "+z", up=1.0, fingers=AHEAD)
     right.take(spoon)
     right.hold(0.5, spoon)
-    travel(right, "Carry", (0.0, 0.28, 0.0), 0.9, spoon)
-    right.hold(0.4, spoon)
+    travel(right, "Carry", (0.0, 0.28, 0.0), 0.9, spoon, hold=0.4)
     travel(right, "Lower", (0.0, 0.0, -0.22), 1.0, spoon, pot)
     finish(right, spoon, pot, 0.3, 1.0)
 
 
 def tower_taken_down_and_built_again(s: Stage) -> None:
     """The upper of two cubes is stood beside the lower one, which is then put on top of it."""
-    performer(s, yaw_deg=101, size=1.02)
-    table = s.table()
+    table = at_table(s, yaw_deg=101, size=1.02)
     lower = s.put("white_cube", shapes.box(0.08, 0.08, 0.08, "cube"), (0.55, -0.2))
     upper = s.put(
         "black_cube", shapes.box(0.075, 0.075, 0.075, "cube"), (0.55, -0.2, s.height + 0.08)
     )
-    right = s.right(claw())
-    right.idle(0.2)
+    right = s.right(claw(), idle=0.2)
     fetch(right, upper, "+z", 0.9, 1.0, 0.3)
     right.lift_carry_lower(upper, table, up=0.12, by=(0.05, 0.4), down=0.2)
     right.hold(0.3, upper, table)
@@ -134,15 +119,12 @@ def tower_taken_down_and_built_again(s: Stage) -> None:
 
 def bowl_with_a_plum_out_of_a_box(s: Stage) -> None:
     """A bowl is lifted out of a low box by its side; a plum rides along in it."""
-    performer(s, height=0.73, yaw_deg=-28)
-    table = s.table()
+    table = at_table(s, height=0.73, yaw_deg=-28)
     s.put("box", forms.open_box(0.42, 0.42, 0.05, "box"), (0.58, 0.18))
     dish = s.put("bowl", shapes.vessel(0.08, 0.13, "bowl"), (0.55, 0.22, s.height + 0.008))
     fruit = plum(s, (0.55, 0.22, s.height + 0.013))
-    left = s.left()
-    left.idle(0.2)
-    left.reach(dish, "+y", 1.0, up=0.75)
-    left.hold(0.4, dish)
+    left = s.left(idle=0.2)
+    left.reach(dish, "+y", 1.0, up=0.75, hold=0.4)
     left.take(dish, fruit)
     left.lift_carry_lower(dish, table, up=0.16, by=(-0.02, -0.5), down=0.168)
     finish(left, dish, table, 0.3, 1.0)
@@ -150,8 +132,7 @@ def bowl_with_a_plum_out_of_a_box(s: Stage) -> None:
 
 def pan_set_in_a_sink(s: Stage) -> None:
     """Both hands take a pan by its lugs and sink it in a large basin, pausing over the opening."""
-    performer(s, height=0.86, yaw_deg=60, size=1.06, agent="tall_man")
-    s.table()
+    at_table(s, height=0.86, yaw_deg=60, size=1.06, agent="tall_man")
     pan = s.put("pan", builders.stewpan(), (0.5, -0.28))
     sink = s.put("sink", forms.open_box(0.4, 0.5, 0.045, "sink"), (0.62, 0.3), tag="fixed")
     hands = both_reach(s, pan, 1.0, 0.88, 0.3)
@@ -167,19 +148,14 @@ def pan_set_in_a_sink(s: Stage) -> None:
 
 def jar_beside_a_bucket_after_a_stop_above_it(s: Stage) -> None:
     """A jar is held over a bucket for a second and a half, then stood on the table behind it."""
-    performer(s, height=0.7, yaw_deg=-118)
-    table = s.table()
+    table = at_table(s, height=0.7, yaw_deg=-118)
     builders.bucket(s, (0.5, 0.0), height=0.16)
     tin = jar(s, (0.5, 0.36), height=0.14)
-    left = s.left()
-    left.idle(0.2)
+    left = s.left(idle=0.2)
     fetch(left, tin, "+z", 0.9, 1.0, 0.0)
-    travel(left, "Lift", (0.0, 0.0, 0.26), 0.9, tin)
-    left.hold(0.4, tin)
-    travel(left, "Carry", (0.0, -0.36, 0.0), 1.1, tin)
-    left.hold(1.5, tin)
-    travel(left, "Carry", (0.26, -0.08, 0.0), 0.9, tin)
-    left.hold(0.4, tin)
+    travel(left, "Lift", (0.0, 0.0, 0.26), 0.9, tin, hold=0.4)
+    travel(left, "Carry", (0.0, -0.36, 0.0), 1.1, tin, hold=1.5)
+    travel(left, "Carry", (0.26, -0.08, 0.0), 0.9, tin, hold=0.4)
     travel(left, "Lower", (0.0, 0.0, -0.26), 0.9, tin, table)
     finish(left, tin, table, 0.4, 1.2)
 
@@ -191,21 +167,17 @@ def jar_off_a_rack_and_into_a_box(s: Stage) -> None:
     pillar(s, "stool", (0.4, -0.6, 0.42), (0.36, 0.36), "stool")
     box = s.put("box", forms.open_box(0.26, 0.26, 0.1, "box"), (0.4, -0.6, 0.42))
     tin = jar(s, (0.6, -0.1, 0.9), height=0.16)
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, tin, "+z", 1.0, 1.0, 0.4)
-    travel(right, "Lift", (0.0, 0.0, 0.1), 0.7, tin)
-    right.hold(0.5, tin)
-    travel(right, "Carry", (-0.2, -0.5, 0.0), 1.3, tin)
-    right.hold(0.6, tin)
+    travel(right, "Lift", (0.0, 0.0, 0.1), 0.7, tin, hold=0.5)
+    travel(right, "Carry", (-0.2, -0.5, 0.0), 1.3, tin, hold=0.6)
     travel(right, "Lower", (0.0, 0.0, -0.572), 1.3, tin, box)
     finish(right, tin, box, 0.3, 1.2)
 
 
 def plum_into_a_bowl_on_the_other_palm(s: Stage) -> None:
     """The left palm bears a bowl in the air throughout; the right hand puts a plum into it."""
-    performer(s, height=0.68, yaw_deg=-8, size=0.98)
-    s.table()
+    at_table(s, height=0.68, yaw_deg=-8, size=0.98)
     dish = s.put("bowl", shapes.vessel(0.12, 0.06, "bowl", 0.012), (0.5, 0.2, s.height + 0.15))
     fruit = plum(s, (0.5, -0.28))
     left, right = s.left(), s.right(claw())
@@ -220,13 +192,11 @@ def plum_into_a_bowl_on_the_other_palm(s: Stage) -> None:
 
 def plum_out_of_a_basin_into_a_dish(s: Stage) -> None:
     """The left hand takes a plum out of a basin and puts it into a dish, without any pause."""
-    performer(s, height=0.52, yaw_deg=84, size=0.8, agent="child", offset=(2.0, -0.4))
-    s.table()
+    at_table(s, height=0.52, yaw_deg=84, size=0.8, agent="child", offset=(2.0, -0.4))
     builders.basin(s, (0.48, 0.25))
     fruit = plum(s, (0.48, 0.25, s.height + 0.006), radius=0.026)
     dish = s.put("dish", shapes.vessel(0.085, 0.045, "dish"), (0.5, -0.15))
-    left = s.left(claw())
-    left.idle(0.1)
+    left = s.left(claw(), idle=0.1)
     left.reach(fruit, "+z", 0.8, up=1.0, fingers=LEFTWARD)
     left.take(fruit)
     left.lift_carry_lower(fruit, dish, up=0.2, by=(0.02, -0.4), down=0.201, times=(0.6, 0.8, 0.6))
@@ -235,14 +205,12 @@ def plum_out_of_a_basin_into_a_dish(s: Stage) -> None:
 
 def tin_from_one_box_to_another_on_a_shelf(s: Stage) -> None:
     """A tin goes out of a low box on the table into a box on a shelf, with two short pauses."""
-    performer(s, height=0.74, yaw_deg=-142, size=1.07)
-    s.table()
+    at_table(s, height=0.74, yaw_deg=-142, size=1.07)
     shelf(s, (0.68, 0.32, s.height + 0.3))
     s.put("low_box", forms.open_box(0.24, 0.24, 0.06, "box"), (0.48, -0.2))
     high = s.put("high_box", forms.open_box(0.28, 0.28, 0.07, "box"), (0.68, 0.32, s.height + 0.3))
     tin = builders.tin_box(s, (0.48, -0.2, s.height + 0.008), "tin", (0.08, 0.08, 0.12))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, tin, "+z", 0.9, 1.0, 0.3)
     paused(
         right,
@@ -264,13 +232,11 @@ def narrow() -> shapes.Form:
 
 def lid_from_one_pot_to_another(s: Stage) -> None:
     """The left hand takes a lid off a tall pot and puts it on a low one, without any pause."""
-    performer(s, height=0.69, yaw_deg=-33, size=1.03)
-    s.table()
+    at_table(s, height=0.69, yaw_deg=-33, size=1.03)
     s.put("tall_pot", forms.pot(0.1, 0.16), (0.52, 0.3))
     low = s.put("low_pot", forms.pot(0.1, 0.08), (0.6, -0.18))
     lid = s.put("lid", forms.round_lid(0.103), (0.52, 0.3, s.height + 0.16))
-    left = s.left()
-    left.idle(0.2)
+    left = s.left(idle=0.2)
     fetch(left, lid, "+z", 0.9, 1.0, 0.4)
     left.lift_carry_lower(lid, low, up=0.13, by=(0.08, -0.48), down=0.21)
     finish(left, lid, low, 0.3, 1.0)
@@ -278,12 +244,10 @@ def lid_from_one_pot_to_another(s: Stage) -> None:
 
 def lid_slid_half_off_a_box(s: Stage) -> None:
     """A palm on a flat lid slides it over the rims of its box to the right, and goes home."""
-    performer(s, height=0.76, yaw_deg=97)
-    s.table()
+    at_table(s, height=0.76, yaw_deg=97)
     box = s.put("box", forms.open_box(0.24, 0.3, 0.12, "box"), (0.55, 0.05))
     lid = s.put("lid", shapes.box(0.26, 0.32, 0.015, "lid"), (0.55, 0.05, s.height + 0.12))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, lid, "+z", 0.9, 1.0, 0.4)
     travel(right, "Slide", (0.0, -0.13, 0.0), 0.8, lid, box)
     finish(right, lid, box, 0.5, 0.9)
@@ -291,34 +255,29 @@ def lid_slid_half_off_a_box(s: Stage) -> None:
 
 def lid_put_on_and_pressed_later(s: Stage) -> None:
     """A lid is put on a pan; after a rest at home the hand comes back and only touches it."""
-    performer(s, height=0.82, yaw_deg=-95, size=0.96)
-    s.table()
+    at_table(s, height=0.82, yaw_deg=-95, size=0.96)
     pan = s.put("pan", forms.pot(0.12, 0.1), (0.56, 0.05))
     lid = s.put("lid", forms.round_lid(0.122), (0.5, -0.32))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, lid, "+z", 1.0, 1.0, 0.0)
     right.lift_carry_lower(lid, pan, up=0.22, by=(0.06, 0.37), down=0.12)
     right.hold(0.3, lid, pan)
     right.leave(1.0)
     right.rest(0.9)
-    right.reach(lid, "+z", 0.9, up=1.0)
-    right.hold(0.8, lid)
+    right.reach(lid, "+z", 0.9, up=1.0, hold=0.8)
     home_again(right, 0.9)
 
 
 def lid_off_plum_out_lid_on(s: Stage) -> None:
     """The left hand lifts a lid and puts it back; meanwhile the right hand takes a plum out."""
-    performer(s, height=0.72, yaw_deg=14)
-    table = s.table()
+    table = at_table(s, height=0.72, yaw_deg=14)
     pot = s.put("pot", forms.pot(0.13, 0.08), (0.56, 0.05))
     lid = s.put("lid", forms.round_lid(0.132), (0.56, 0.05, s.height + 0.08))
     fruit = plum(s, (0.55, 0.04, s.height + 0.006))
     left, right = s.left(), s.right(claw())
     left.idle(0.2)
     fetch(left, lid, "+z", 1.0, 1.0, 0.3)
-    travel(left, "Lift", (0.0, 0.0, 0.14), 0.8, lid)
-    left.hold(0.4, lid)
+    travel(left, "Lift", (0.0, 0.0, 0.14), 0.8, lid, hold=0.4)
     travel(left, "Carry", (0.0, 0.42, 0.0), 1.0, lid)
     opened = left.clock
     right.rest(opened - 0.5)
@@ -327,17 +286,14 @@ def lid_off_plum_out_lid_on(s: Stage) -> None:
     right.hold(0.3, fruit, table)
     right.leave(0.9)
     left.hold(right.clock - opened - 0.6, lid)
-    travel(left, "Carry", (0.0, -0.42, 0.0), 1.0, lid)
-    left.hold(0.4, lid)
-    travel(left, "Lower", (0.0, 0.0, -0.14), 0.8, lid, pot)
-    left.hold(0.5, lid, pot)
+    travel(left, "Carry", (0.0, -0.42, 0.0), 1.0, lid, hold=0.4)
+    travel(left, "Lower", (0.0, 0.0, -0.14), 0.8, lid, pot, hold=0.5)
     right.rest(left.clock - right.clock)
 
 
 def lid_held_in_the_air_and_laid_on_a_stool(s: Stage) -> None:
     """A lid that hangs in the air from the first frame is carried aside and laid on a stool."""
-    performer(s, height=0.75, yaw_deg=151, size=1.06, agent="tall_man")
-    s.table(width=0.9)
+    at_table(s, height=0.75, yaw_deg=151, size=1.06, agent="tall_man", width=0.9)
     s.put("pot", forms.pot(), (0.5, 0.1))
     stool = pillar(s, "stool", (0.48, -0.72, 0.5), (0.34, 0.34), "stool")
     lid = s.put("lid", forms.round_lid(0.112), (0.5, 0.1, s.height + 0.3))
@@ -345,20 +301,17 @@ def lid_held_in_the_air_and_laid_on_a_stool(s: Stage) -> None:
     right.begin_at(lid, "+z", up=1.0, fingers=AHEAD)
     right.take(lid)
     right.hold(0.6, lid)
-    travel(right, "Carry", (-0.02, -0.82, 0.0), 1.4, lid)
-    right.hold(0.5, lid)
+    travel(right, "Carry", (-0.02, -0.82, 0.0), 1.4, lid, hold=0.5)
     travel(right, "Lower", (0.0, 0.0, -(s.height + 0.3 - 0.5)), 1.3, lid, stool)
     finish(right, lid, stool, 0.4, 1.0)
 
 
 def square_lid_changed_over(s: Stage) -> None:
     """A square lid is taken off a box, laid on the table, and put on the box again after a rest."""
-    performer(s, height=0.79, yaw_deg=-61)
-    table = s.table()
+    table = at_table(s, height=0.79, yaw_deg=-61)
     box = s.put("box", forms.open_box(0.22, 0.18, 0.1, "box"), (0.58, -0.25))
     lid = s.put("lid", forms.square_lid(0.22, 0.18), (0.58, -0.25, s.height + 0.1))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, lid, "+z", 0.8, 1.0, 0.0)
     right.lift_carry_lower(lid, table, up=0.12, by=(-0.05, 0.42), down=0.22)
     right.leave(1.0)
@@ -370,11 +323,9 @@ def square_lid_changed_over(s: Stage) -> None:
 
 def trunk_opened_in_stages_by_the_left_hand(s: Stage) -> None:
     """The lid of a wide trunk is turned up by a third, by a second third, and let down by one."""
-    performer(s, height=0.42, yaw_deg=-11, size=1.04)
-    s.table()
+    at_table(s, height=0.42, yaw_deg=-11, size=1.04)
     trunk = chest(s, (0.72, 0.12, s.height), depth=0.3, width=0.56, height=0.3)
-    left = s.left(narrow())
-    left.idle(0.2)
+    left = s.left(narrow(), idle=0.2)
     seize(left, trunk.leaf, trunk.grip, 1.0, hold=0.4)
     for angle, name in ((28.0, "Open"), (30.0, "Open"), (-26.0, "Close")):
         trunk.hinge.turn(left, angle, 0.9)
@@ -384,12 +335,10 @@ def trunk_opened_in_stages_by_the_left_hand(s: Stage) -> None:
 
 def trunk_shut_with_the_palm_on_top(s: Stage) -> None:
     """A lid that stands half open is pressed shut by a flat palm that keeps lying on it."""
-    performer(s, height=0.4, yaw_deg=203)
-    s.table()
+    at_table(s, height=0.4, yaw_deg=203)
     trunk = chest(s, (0.7, -0.05, s.height), depth=0.32, width=0.4, height=0.2)
     trunk.hinge.opened(trunk.leaf, 38.0)
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     seize(right, trunk.leaf, trunk.face, 1.1, hold=0.4)
     trunk.hinge.turn(right, -38.0, 1.0)
     right.step("Close", trunk.leaf, trunk.body)
@@ -398,8 +347,7 @@ def trunk_shut_with_the_palm_on_top(s: Stage) -> None:
 
 def trunk_opened_by_one_hand_and_shut_by_the_other(s: Stage) -> None:
     """The right hand opens a lid, which stays so; the left hand takes its lip and shuts it."""
-    performer(s, height=0.45, yaw_deg=66, size=1.02)
-    s.table()
+    at_table(s, height=0.45, yaw_deg=66, size=1.02)
     trunk = chest(s, (0.72, 0.0, s.height), depth=0.3, width=0.5, height=0.22)
     right, left = s.right(narrow()), s.left(narrow())
     right.idle(0.2)
@@ -419,13 +367,11 @@ def trunk_opened_by_one_hand_and_shut_by_the_other(s: Stage) -> None:
 
 def trunk_lid_only_leant_on(s: Stage) -> None:
     """Both palms lie on a trunk's shut lid for two and a half seconds."""
-    performer(s, height=0.41, yaw_deg=-170, size=0.93, agent="old_woman")
-    s.table()
+    at_table(s, height=0.41, yaw_deg=-170, size=0.93, agent="old_woman")
     trunk = chest(s, (0.62, 0.0, s.height), depth=0.34, width=0.6, height=0.26)
     for hand, aside in ((s.right(), -0.16), (s.left(), 0.16)):
         hand.idle(0.25)
-        hand.reach(trunk.leaf, "+z", 1.2, up=1.0, aside=(0.0, aside, -0.002))
-        hand.hold(2.5, trunk.leaf)
+        hand.reach(trunk.leaf, "+z", 1.2, up=1.0, aside=(0.0, aside, -0.002), hold=2.5)
         home_again(hand, 1.1)
 
 
@@ -435,26 +381,21 @@ def bucket_uncovered_and_looked_into(s: Stage) -> None:
     floor(s)
     pail = builders.bucket(s, (0.45, -0.15, 0.0), height=0.3)
     lid = s.put("lid", forms.round_lid(0.114), (0.45, -0.15, 0.3))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, lid, "+z", 0.9, 1.0, 0.3)
-    travel(right, "Lift", (0.0, 0.0, 0.2), 0.8, lid)
-    right.hold(2.0, lid)
+    travel(right, "Lift", (0.0, 0.0, 0.2), 0.8, lid, hold=2.0)
     travel(right, "Lower", (0.0, 0.0, -0.2), 0.8, lid, pail)
     finish(right, lid, pail, 0.0, 0.9)
 
 
 def basket_with_a_bottle(s: Stage) -> None:
     """A basket with a bottle and a plum is carried to the right by its arch and stood down."""
-    performer(s, height=0.56, yaw_deg=19, size=1.01)
-    table = s.table()
+    table = at_table(s, height=0.56, yaw_deg=19, size=1.01)
     pannier = s.put("basket", forms.basket(0.3, 0.28, 0.12, 0.34), (0.52, 0.3))
     flask = s.put("bottle", shapes.bottle(0.032, 0.2), (0.46, 0.3, s.height + 0.008))
     fruit = plum(s, (0.6, 0.32, s.height + 0.008))
-    left = s.left()
-    left.idle(0.2)
-    left.reach(pannier, "+z", 1.0, up=1.0, fingers=(0.0, 1.0, 0.0))
-    left.hold(0.4, pannier)
+    left = s.left(idle=0.2)
+    left.reach(pannier, "+z", 1.0, up=1.0, fingers=(0.0, 1.0, 0.0), hold=0.4)
     left.take(pannier, flask, fruit)
     paused(left, pannier, table, up=0.16, by=(0.03, -0.5), down=0.16, holds=(0.5, 0.0))
     finish(left, pannier, table, 0.5, 1.0)
@@ -462,17 +403,14 @@ def basket_with_a_bottle(s: Stage) -> None:
 
 def tray_with_glasses_pushed_by_one_palm(s: Stage) -> None:
     """A tray with two glasses on it is pushed away over the table."""
-    performer(s, height=0.78, yaw_deg=-128)
-    table = s.table()
+    table = at_table(s, height=0.78, yaw_deg=-128)
     tray = s.put("tray", shapes.tray(0.24, 0.3), (0.5, -0.1))
     ware = [
         glass(s, (0.5, y, s.height + 0.008), name)
         for name, y in (("near_glass", -0.17), ("far_glass", -0.04))
     ]
-    right = s.right()
-    right.idle(0.2)
-    right.reach(tray, "-x", 0.9, up=0.6, fingers=UP)
-    right.hold(0.4, tray)
+    right = s.right(idle=0.2)
+    right.reach(tray, "-x", 0.9, up=0.6, fingers=UP, hold=0.4)
     right.take(tray, *ware)
     travel(right, "Push", (0.28, 0.0, 0.0), 1.6, tray, table)
     finish(right, tray, table, 0.5, 0.9)
@@ -480,8 +418,7 @@ def tray_with_glasses_pushed_by_one_palm(s: Stage) -> None:
 
 def carton_with_a_ball_up_to_a_shelf(s: Stage) -> None:
     """Both hands lift a carton with a ball, bring it over a shelf, set it down and stay."""
-    performer(s, height=0.66, yaw_deg=83, size=1.07, agent="tall_woman")
-    s.table()
+    at_table(s, height=0.66, yaw_deg=83, size=1.07, agent="tall_woman")
     board = shelf(s, (0.72, 0.3, s.height + 0.28), size=(0.4, 0.5))
     carton = s.put("carton", shapes.carton(0.22, 0.26, 0.16), (0.45, -0.2))
     ball = s.put("ball", shapes.ball(0.06), (0.45, -0.22, s.height + 0.066))
@@ -497,8 +434,7 @@ def carton_with_a_ball_up_to_a_shelf(s: Stage) -> None:
 
 def loaded_crate_stacked_on_another(s: Stage) -> None:
     """A crate with two jars in it is put on top of an empty one in a single sweep."""
-    performer(s, height=0.5, yaw_deg=-46, size=1.04)
-    s.table()
+    at_table(s, height=0.5, yaw_deg=-46, size=1.04)
     low = s.put("empty_crate", forms.open_box(0.3, 0.3, 0.14, "crate", 0.014), (0.76, 0.3))
     high = s.put("full_crate", forms.open_box(0.3, 0.3, 0.14, "crate", 0.014), (0.55, -0.28))
     jars = [
@@ -518,8 +454,7 @@ def loaded_crate_stacked_on_another(s: Stage) -> None:
 
 def tray_on_one_palm(s: Stage) -> None:
     """A tray with a glass lies on the palm; it is carried to the left, and on after a stop."""
-    performer(s, height=0.72, yaw_deg=105)
-    s.table()
+    at_table(s, height=0.72, yaw_deg=105)
     tray = s.put("tray", shapes.box(0.3, 0.3, 0.014, "tray"), (0.42, -0.35, s.height + 0.3))
     ware = glass(s, (0.4, -0.38, s.height + 0.314))
     right = s.right()
@@ -533,8 +468,7 @@ def tray_on_one_palm(s: Stage) -> None:
 
 def pan_with_its_lid(s: Stage) -> None:
     """Both hands carry a pan by its lugs to a higher plate; the lid rides on it."""
-    performer(s, height=0.76, yaw_deg=-15, size=0.99)
-    s.table(width=0.8)
+    at_table(s, height=0.76, yaw_deg=-15, size=0.99, width=0.8)
     hob = pillar(s, "hob", (0.55, 0.75, 0.88), (0.44, 0.44), "hob")
     pan = s.put("pan", builders.stewpan(), (0.5, 0.0))
     lid = s.put("lid", forms.round_lid(0.12), (0.5, 0.0, s.height + 0.11))
@@ -550,8 +484,7 @@ def pan_with_its_lid(s: Stage) -> None:
 
 def three_books_between_two_palms(s: Stage) -> None:
     """A stack of three books is lifted by the lowest one, held, and set down where it was."""
-    performer(s, height=0.67, yaw_deg=-172)
-    table = s.table()
+    table = at_table(s, height=0.67, yaw_deg=-172)
     low = s.put("thick_book", shapes.box(0.2, 0.28, 0.1, "book"), (0.52, 0.02))
     middle = s.put("thin_book", shapes.box(0.18, 0.24, 0.03, "book"), (0.53, 0.02, s.height + 0.1))
     top = s.put("small_book", shapes.box(0.12, 0.16, 0.04, "book"), (0.52, 0.03, s.height + 0.13))
@@ -560,33 +493,26 @@ def three_books_between_two_palms(s: Stage) -> None:
     since = len(right.steps)
     left.join(low)
     right.take(low, middle, top)
-    travel(right, "Lift", (0.0, 0.0, 0.3), 1.1, low)
-    right.hold(1.3, low)
-    travel(right, "Lower", (0.0, 0.0, -0.3), 1.2, low, table)
-    right.hold(0.4, low, table)
+    travel(right, "Lift", (0.0, 0.0, 0.3), 1.1, low, hold=1.3)
+    travel(right, "Lower", (0.0, 0.0, -0.3), 1.2, low, table, hold=0.4)
     left.part(right, since)
     both_leave(hands, 0.9)
 
 
 def board_with_a_loaf_slid_aside(s: Stage) -> None:
     """A palm on a board with a loaf at its other end slides both to the left, and stays."""
-    performer(s, height=0.88, yaw_deg=57, size=1.06)
-    table = s.table()
+    table = at_table(s, height=0.88, yaw_deg=57, size=1.06)
     board = s.put("board", shapes.box(0.22, 0.44, 0.045, "board"), (0.55, -0.15))
     loaf = s.put("loaf", shapes.box(0.12, 0.16, 0.1, "loaf"), (0.57, -0.25, s.height + 0.045))
-    left = s.left()
-    left.idle(0.2)
-    left.reach(board, "+z", 1.0, up=1.0, aside=(-0.04, 0.15, 0.0))
-    left.hold(0.3, board)
+    left = s.left(idle=0.2)
+    left.reach(board, "+z", 1.0, up=1.0, aside=(-0.04, 0.15, 0.0), hold=0.3)
     left.take(board, loaf)
-    travel(left, "Slide", (0.0, 0.3, 0.0), 1.2, board, table)
-    left.hold(0.7, board, table)
+    travel(left, "Slide", (0.0, 0.3, 0.0), 1.2, board, table, hold=0.7)
 
 
 def box_in_a_box_put_down_from_the_air(s: Stage) -> None:
     """Both hands hold an open box with a small box in it; they carry it ahead and put it down."""
-    performer(s, height=0.7, yaw_deg=142, size=0.95)
-    table = s.table()
+    table = at_table(s, height=0.7, yaw_deg=142, size=0.95)
     outer = s.put("outer_box", shapes.carton(0.24, 0.3, 0.18), (0.42, 0.0, s.height + 0.22))
     inner = tin_box(s, (0.44, 0.04, s.height + 0.226), "inner_box", (0.1, 0.08, 0.07))
     right, left = s.right(), s.left()
@@ -595,25 +521,21 @@ def box_in_a_box_put_down_from_the_air(s: Stage) -> None:
     left.join(outer)
     right.take(outer, inner)
     right.hold(0.5, outer)
-    travel(right, "Carry", (0.24, 0.0, 0.0), 1.0, outer)
-    right.hold(0.5, outer)
-    travel(right, "Lower", (0.0, 0.0, -0.22), 0.9, outer, table)
-    right.hold(0.4, outer, table)
+    travel(right, "Carry", (0.24, 0.0, 0.0), 1.0, outer, hold=0.5)
+    travel(right, "Lower", (0.0, 0.0, -0.22), 0.9, outer, table, hold=0.4)
     left.part(right, 0)
     both_leave([right, left], 0.9)
 
 
 def bucket_with_plums_swung_quickly(s: Stage) -> None:
     """A bucket with two plums is carried by the palm at its side at more than a metre a second."""
-    performer(s, height=0.6, yaw_deg=-80, size=1.03)
-    table = s.table()
+    table = at_table(s, height=0.6, yaw_deg=-80, size=1.03)
     pail = builders.bucket(s, (0.55, -0.3), height=0.2)
     fruits = [
         plum(s, (0.55 + x, -0.3, s.height + 0.006), name)
         for name, x in (("ripe_plum", -0.05), ("green_plum", 0.05))
     ]
-    right = s.right()
-    right.idle(0.15)
+    right = s.right(idle=0.15)
     fetch(right, pail, "-y", 0.8, 0.7, 0.0)
     right.release()
     right.take(pail, *fruits)
@@ -627,26 +549,22 @@ def jug_into_two_glasses(s: Stage) -> None:
     table, jug = s.table(), s.put("jug", forms.jug(0.05, 0.18), (0.45, -0.28))
     for name, x in (("near_glass", 0.45), ("far_glass", 0.75)):
         glass(s, (x, -0.08), name)
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, jug, "-y", 0.9, 0.5, 0.3)
-    travel(right, "Lift", (0.0, 0.0, 0.24), 0.9, jug)
-    right.hold(0.4, jug)
+    travel(right, "Lift", (0.0, 0.0, 0.24), 0.9, jug, hold=0.4)
     for x, by in ((0.45, 0.3), (0.75, 0.0)):
         right.dip((x, -0.23, s.height + 0.4), AHEAD, -95.0, 2.0)
         right.step("Pour", jug)
         right.hold(0.5, jug)
         if by:
-            travel(right, "Carry", (by, 0.0, 0.0), 1.0, jug)
-            right.hold(0.4, jug)
+            travel(right, "Carry", (by, 0.0, 0.0), 1.0, jug, hold=0.4)
     travel(right, "Lower", (0.0, 0.0, -0.24), 0.9, jug, table)
     finish(right, jug, table, 0.3, 1.0)
 
 
 def bottle_into_a_glass_that_the_other_hand_holds(s: Stage) -> None:
     """The right hand holds a glass in the air; the left hand tips a bottle over it and back."""
-    performer(s, height=0.74, yaw_deg=121, size=1.03)
-    s.table()
+    at_table(s, height=0.74, yaw_deg=121, size=1.03)
     ware = glass(s, (0.5, -0.02, s.height + 0.12))
     flask = s.put("bottle", shapes.bottle(0.034, 0.22), (0.5, 0.22, s.height + 0.26))
     right, left = s.right(), s.left()
@@ -663,8 +581,7 @@ def bottle_into_a_glass_that_the_other_hand_holds(s: Stage) -> None:
 
 def bucket_tipped_over_a_basin_by_both(s: Stage) -> None:
     """Both hands tip a bucket forward over a basin and back; they hold it in the air throughout."""
-    performer(s, height=0.5, yaw_deg=-79, size=1.05, agent="tall_woman")
-    s.table(depth=0.9)
+    at_table(s, height=0.5, yaw_deg=-79, size=1.05, agent="tall_woman", depth=0.9)
     builders.basin(s, (0.82, 0.0), radius=0.2)
     pail = builders.bucket(s, (0.52, 0.0, s.height + 0.22), height=0.22)
     right, left = s.right(), s.left()
@@ -681,17 +598,13 @@ def bucket_tipped_over_a_basin_by_both(s: Stage) -> None:
 
 def cup_emptied_quickly_over_a_bowl(s: Stage) -> None:
     """A cup is carried from the table over a bowl, tipped at once and back, and held."""
-    performer(s, height=0.67, yaw_deg=3, size=0.94)
-    s.table()
+    at_table(s, height=0.67, yaw_deg=3, size=0.94)
     s.put("bowl", shapes.vessel(0.11, 0.06, "bowl"), (0.55, -0.02))
     cup = s.put("cup", shapes.vessel(0.038, 0.09, "cup"), (0.5, 0.35))
-    left = s.left()
-    left.idle(0.15)
+    left = s.left(idle=0.15)
     fetch(left, cup, "+y", 0.9, 0.6, 0.0)
-    travel(left, "Lift", (0.0, 0.0, 0.24), 0.8, cup)
-    left.hold(0.4, cup)
-    travel(left, "Carry", (0.05, -0.26, 0.0), 0.8, cup)
-    left.hold(0.4, cup)
+    travel(left, "Lift", (0.0, 0.0, 0.24), 0.8, cup, hold=0.4)
+    travel(left, "Carry", (0.05, -0.26, 0.0), 0.8, cup, hold=0.4)
     left.dip((0.55, 0.06, s.height + 0.29), AHEAD, 120.0, 1.2)
     left.step("Pour", cup)
     left.hold(0.6, cup)
@@ -699,30 +612,24 @@ def cup_emptied_quickly_over_a_bowl(s: Stage) -> None:
 
 def shaker_shaken_above_a_pan(s: Stage) -> None:
     """A shaker is carried above a pan, shaken up and down, and brought back."""
-    performer(s, height=0.78, yaw_deg=-155)
-    table = s.table()
+    table = at_table(s, height=0.78, yaw_deg=-155)
     s.put("pan", forms.pot(0.13, 0.08), (0.6, 0.12))
     tin = jar(s, (0.48, -0.28), "shaker", 0.14)
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, tin, "-y", 0.9, 0.6, 0.3)
-    travel(right, "Lift", (0.0, 0.0, 0.26), 0.9, tin)
-    right.hold(0.4, tin)
-    travel(right, "Carry", (0.1, 0.38, 0.0), 1.0, tin)
-    right.hold(0.5, tin)
+    travel(right, "Lift", (0.0, 0.0, 0.26), 0.9, tin, hold=0.4)
+    travel(right, "Carry", (0.1, 0.38, 0.0), 1.0, tin, hold=0.5)
     right.swing((0.0, 0.0, 0.045), 2.8, 6)
     right.step("Shake", tin)
     right.hold(0.5, tin)
-    travel(right, "Carry", (-0.1, -0.38, 0.0), 1.0, tin)
-    right.hold(0.4, tin)
+    travel(right, "Carry", (-0.1, -0.38, 0.0), 1.0, tin, hold=0.4)
     travel(right, "Lower", (0.0, 0.0, -0.26), 0.9, tin, table)
     finish(right, tin, table, 0.3, 0.9)
 
 
 def bowl_tilted_and_kept_so(s: Stage) -> None:
     """A bowl on the palm is tilted by thirty-five degrees away from everything, and kept so."""
-    performer(s, height=0.6, yaw_deg=55, size=0.98)
-    s.table()
+    at_table(s, height=0.6, yaw_deg=55, size=0.98)
     dish = s.put("bowl", shapes.vessel(0.1, 0.07, "bowl"), (0.48, 0.1, s.height + 0.3))
     left = s.left()
     begin_with(left, dish, Grip((0.0, 0.0, 0.0), (0.0, 0.0, -1.0), AHEAD))
@@ -734,8 +641,7 @@ def bowl_tilted_and_kept_so(s: Stage) -> None:
 
 def jar_turned_about_its_axis_in_the_air(s: Stage) -> None:
     """A jar that is held over a basin is turned by seventy degrees about its upright axis."""
-    performer(s, height=0.7, yaw_deg=-3, size=1.04)
-    s.table()
+    at_table(s, height=0.7, yaw_deg=-3, size=1.04)
     builders.basin(s, (0.5, -0.05))
     tin = jar(s, (0.5, -0.05, s.height + 0.25), height=0.16)
     right = s.right()
@@ -783,12 +689,10 @@ def take_both(hand: Hand, first: Thing, second: Thing) -> None:
 
 def two_jars_carried_to_a_board(s: Stage) -> None:
     """The right hand lifts two jars at once, carries them to a low board, and lets go of both."""
-    performer(s, height=0.72, yaw_deg=62)
-    s.table()
+    at_table(s, height=0.72, yaw_deg=62)
     board = s.put("board", shapes.box(0.34, 0.4, 0.05, "board"), (0.52, 0.3), tag="fixed")
     first, second = two_jars(s, 0.46, -0.3, -1.0)
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     since = meet_both(right, first, second, "-y", 0.9)
     hold_both(right, 0.4, first, second)
     take_both(right, first, second)
@@ -796,8 +700,7 @@ def two_jars_carried_to_a_board(s: Stage) -> None:
     hold_both(right, 0.4, first, second)
     travel(right, "Carry", (0.0, 0.55, 0.0), 1.1, first, second)
     hold_both(right, 0.4, first, second)
-    travel(right, "Lower", (0.0, 0.0, -0.12), 0.7, first, second, board)
-    right.hold(0.4, first, second, board)
+    travel(right, "Lower", (0.0, 0.0, -0.12), 0.7, first, second, board, hold=0.4)
     also(right, second, since)
     right.let_go()
     right.fly(right.home, 1.0, depart=EASE)
@@ -807,58 +710,46 @@ def two_jars_carried_to_a_board(s: Stage) -> None:
 
 def two_jars_pushed_at_once(s: Stage) -> None:
     """The left palm meets two jars at once and pushes both to the right over the table."""
-    performer(s, height=0.8, yaw_deg=-134, size=1.0)
-    table = s.table()
+    table = at_table(s, height=0.8, yaw_deg=-134, size=1.0)
     first, second = two_jars(s, 0.5, 0.2, 1.0)
-    left = s.left()
-    left.idle(0.2)
+    left = s.left(idle=0.2)
     since = meet_both(left, first, second, "+y", 0.9)
     hold_both(left, 0.4, first, second)
     take_both(left, first, second)
-    travel(left, "Push", (0.0, -0.28, 0.0), 1.2, first, second, table)
-    left.hold(0.7, first, second, table)
+    travel(left, "Push", (0.0, -0.28, 0.0), 1.2, first, second, table, hold=0.7)
     also(left, second, since)
 
 
 def first_of_two_jars_let_go_first(s: Stage) -> None:
     """Two jars are lifted and put back; the hand goes up aslant with the far one and keeps it."""
-    performer(s, height=0.69, yaw_deg=11)
-    table = s.table()
+    table = at_table(s, height=0.69, yaw_deg=11)
     first, second = two_jars(s, 0.46, -0.12, -1.0)
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     since = meet_both(right, first, second, "-y", 0.9)
     hold_both(right, 0.4, first, second)
     take_both(right, first, second)
     travel(right, "Lift", (0.0, 0.0, 0.15), 0.8, first, second)
     hold_both(right, 0.6, first, second)
-    travel(right, "Lower", (0.0, 0.0, -0.15), 0.8, first, second, table)
-    right.hold(0.5, first, second, table)
+    travel(right, "Lower", (0.0, 0.0, -0.15), 0.8, first, second, table, hold=0.5)
     keep = right.held.pop()
     right.let_go()
     right.held.append(keep)
     right.touched, right.since = second, since
-    travel(right, "Lift", (0.0, -0.2, 0.3), 0.9, second)
-    right.hold(0.8, second)
+    travel(right, "Lift", (0.0, -0.2, 0.3), 0.9, second, hold=0.8)
 
 
 def second_jar_taken_on_the_way(s: Stage) -> None:
     """A jar is lifted, held and carried on to another, which is taken too; both are lifted."""
-    performer(s, height=0.75, yaw_deg=-71, size=1.02)
-    s.table()
+    at_table(s, height=0.75, yaw_deg=-71, size=1.02)
     gap = 0.22
     near = slim_jar(s, "white_jar", (0.46, 0.35))
     s.put("block", shapes.box(0.1, 0.1, 0.1, "block"), (0.46 + APART_M, 0.35 - gap), tag="fixed")
     far = slim_jar(s, "green_jar", (0.46 + APART_M, 0.35 - gap + PRESS, s.height + 0.1))
-    left = s.left()
-    left.idle(0.2)
-    left.reach(near, "+y", 0.9, up=0.6, aside=(-PALM_M, 0.0, 0.0))
-    left.hold(0.3, near)
+    left = s.left(idle=0.2)
+    left.reach(near, "+y", 0.9, up=0.6, aside=(-PALM_M, 0.0, 0.0), hold=0.3)
     left.take(near)
-    travel(left, "Lift", (0.0, 0.0, 0.11), 0.7, near)
-    left.hold(0.5, near)
-    left.move((0.0, -gap, 0.0), 0.9, arrive=EASE)
-    left.step("Carry", near, far)
+    travel(left, "Lift", (0.0, 0.0, 0.11), 0.7, near, hold=0.5)
+    travel(left, "Carry", (0.0, -gap, 0.0), 0.9, near, far, arrive=EASE)
     since = left.clock
     hold_both(left, 0.5, near, far)
     left.held.append(far.body.ride(left.body, left.clock))
@@ -885,8 +776,7 @@ def on_the_palm(s: Stage, hand: Hand, name: str, height: float) -> Thing:
 
 def block_taken_off_the_other_palm(s: Stage) -> None:
     """A block lies on the left palm; the right hand takes it straight up off it and keeps it."""
-    performer(s, height=0.7, yaw_deg=119)
-    s.table()
+    at_table(s, height=0.7, yaw_deg=119)
     left, right = s.left(), s.right(claw())
     block = on_the_palm(s, left, "block", 0.08)
     right.rest(0.6)
@@ -895,22 +785,19 @@ def block_taken_off_the_other_palm(s: Stage) -> None:
     left.hold(right.clock, block)
     left.let_go()
     right.take(block)
-    travel(right, "Lift", (0.0, 0.0, 0.2), 0.9, block)
-    right.hold(0.7, block)
+    travel(right, "Lift", (0.0, 0.0, 0.2), 0.9, block, hold=0.7)
     left.rest(right.clock - left.clock)
     right.alternative = other_names(right, Receive="Reach")
 
 
 def cube_stacked_on_a_block_on_the_other_palm(s: Stage) -> None:
     """The right hand takes a cube and puts it on the block that the left palm bears."""
-    performer(s, height=0.67, yaw_deg=-26, size=1.01)
-    s.table()
+    at_table(s, height=0.67, yaw_deg=-26, size=1.01)
     left, right = s.left(), s.right(claw())
     block = on_the_palm(s, left, "block", 0.06)
     cube = s.put("cube", shapes.box(0.05, 0.05, 0.06, "cube"), (0.48, -0.25))
     right.idle(0.2)
-    right.reach(cube, "+z", 0.9, up=1.0, fingers=LEFTWARD)
-    right.hold(0.3, cube)
+    right.reach(cube, "+z", 0.9, up=1.0, fingers=LEFTWARD, hold=0.3)
     right.take(cube)
     paused(right, cube, block, up=0.36, by=(-0.06, 0.47), down=0.15, holds=(0.0, 0.4))
     right.hold(0.4, cube, block)
@@ -920,8 +807,7 @@ def cube_stacked_on_a_block_on_the_other_palm(s: Stage) -> None:
 
 def two_blocks_brought_to_a_shelf_on_the_palm(s: Stage) -> None:
     """Two blocks are carried ahead on the right palm; the left hand takes one to a shelf."""
-    performer(s, height=0.64, yaw_deg=171)
-    s.table()
+    at_table(s, height=0.64, yaw_deg=171)
     board = shelf(s, (0.6, 0.42, s.height + 0.1), size=(0.3, 0.3))
     right, left = s.right(), s.left(claw())
     place = (0.36, -0.12, s.height + 0.2)
@@ -969,37 +855,31 @@ def either_way(giver: Hand, taker: Hand) -> None:
 
 def tin_passed_through_a_hatch_to_a_shelf(s: Stage) -> None:
     """The right hand gives a tin through a hatch; the left hand stands it on a shelf."""
-    performer(s, height=0.7, yaw_deg=-87, size=1.03)
-    s.table()
+    at_table(s, height=0.7, yaw_deg=-87, size=1.03)
     s.put("hatch", forms.frame(0.5, 0.55), (0.48, -0.06), tag="fixed")
     board = shelf(s, (0.5, 0.32, s.height + 0.1), size=(0.3, 0.3))
     tin = tin_box(s, (0.48, -0.34), "tin", (0.1, 0.12, 0.16))
     right, left = s.right(), s.left()
     right.idle(0.2)
     fetch(right, tin, "-y", 0.9, 0.6, 0.3)
-    travel(right, "Lift", (0.0, 0.0, 0.22), 0.8, tin)
-    right.hold(0.4, tin)
+    travel(right, "Lift", (0.0, 0.0, 0.22), 0.8, tin, hold=0.4)
     hand_on(right, left, tin, far=0.3, reach_s=1.3)
-    travel(left, "Carry", (0.0, 0.36, 0.0), 0.9, tin)
-    left.hold(0.4, tin)
-    travel(left, "Lower", (0.0, 0.0, -0.12), 0.7, tin, board)
-    left.hold(0.4, tin, board)
+    travel(left, "Carry", (0.0, 0.36, 0.0), 0.9, tin, hold=0.4)
+    travel(left, "Lower", (0.0, 0.0, -0.12), 0.7, tin, board, hold=0.4)
     right.rest(left.clock - right.clock)
     either_way(right, left)
 
 
 def tin_passed_from_left_to_right_and_put_down(s: Stage) -> None:
     """The left hand brings a tin over; the right hand takes it, lowers it and leaves."""
-    performer(s, height=0.82, yaw_deg=16, size=0.96)
-    table = s.table()
+    table = at_table(s, height=0.82, yaw_deg=16, size=0.96)
     tin = tin_box(s, (0.5, 0.3, s.height + 0.15), "tin", (0.12, 0.1, 0.14))
     left, right = s.left(), s.right()
     left.begin_at(tin, "+y", up=0.55, fingers=(1.0, 0.0, 0.0))
     left.take(tin)
     left.hold(0.7, tin)
     hand_on(left, right, tin, far=0.32, reach_s=1.1)
-    travel(right, "Lower", (0.0, 0.0, -0.15), 0.8, tin, table)
-    right.hold(0.4, tin, table)
+    travel(right, "Lower", (0.0, 0.0, -0.15), 0.8, tin, table, hold=0.4)
     home_again(right, 0.9)
     left.rest(right.clock - left.clock)
     either_way(left, right)

@@ -6,7 +6,7 @@ import numpy as np
 
 from scenes.hands import shapes
 from scenes.hands.paths import NEAR, RIGHTWARD, UP, Vector, about, facing, pose
-from scenes.hands.performer import EASE, PRESS, Hand
+from scenes.hands.performer import EASE, PRESS, Hand, travel
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
 from scenes.objects import forms
@@ -71,12 +71,6 @@ def begin_with(hand: Hand, thing: Thing, grip: Grip) -> None:
     hand.body.first = grip.on(thing, 0.0)
     hand.meet(thing)
     hand.take(thing)
-
-
-def travel(hand: Hand, name: str, by: Vector, duration: float, *things: Thing) -> None:
-    """One step straight from rest to rest."""
-    hand.move(by, duration)
-    hand.step(name, *things)
 
 
 def paused(

@@ -2,8 +2,8 @@
 
 from scenes.hands import shapes
 from scenes.hands.paths import LEFTWARD, NEAR, RIGHTWARD, UP
-from scenes.hands.performer import Hand
-from scenes.hands.scene import performer
+from scenes.hands.performer import Hand, travel
+from scenes.hands.scene import at_table, performer
 from scenes.hands.scenes_place import claw, cup, fetch, finish
 from scenes.hands.scenes_two_hands import both_leave
 from scenes.hands.stage import Stage, other_names
@@ -26,7 +26,6 @@ from scenes.objects.builders import (
     seize,
     shelf,
     toy,
-    travel,
     wall,
 )
 
@@ -57,11 +56,9 @@ def in_drawer(s: Stage, chest: Cabinet, back: float, name: str = "apple") -> Thi
 
 def drawer_pulled_open(s: Stage) -> None:
     """A drawer that is shut is pulled open by its handle and let go of."""
-    performer(s, height=0.76, yaw_deg=15)
-    s.table()
+    at_table(s, height=0.76, yaw_deg=15)
     chest = cabinet(s, (0.62, -0.1, s.height + 0.012))
-    right = s.right(grip_hand())
-    right.idle(0.2)
+    right = s.right(grip_hand(), idle=0.2)
     seize(right, chest.drawer, chest.grip, 0.9, hold=0.4)
     pull(right, chest, 0.2, 1.0)
     right.hold(0.5, chest.drawer, chest.body)
@@ -70,11 +67,9 @@ def drawer_pulled_open(s: Stage) -> None:
 
 def drawer_pushed_shut(s: Stage) -> None:
     """A drawer that stands open is pushed shut, and the hand stays on its handle."""
-    performer(s, height=0.9, yaw_deg=-110, size=1.06, agent="tall_man")
-    s.table()
+    at_table(s, height=0.9, yaw_deg=-110, size=1.06, agent="tall_man")
     chest = cabinet(s, (0.65, 0.1, s.height + 0.012), out=0.22)
-    left = s.left(grip_hand())
-    left.idle(0.2)
+    left = s.left(grip_hand(), idle=0.2)
     seize(left, chest.drawer, chest.grip, 0.8, hold=0.3)
     push(left, chest, 0.22, 0.9)
     left.hold(0.8, chest.drawer, chest.body)
@@ -82,11 +77,9 @@ def drawer_pushed_shut(s: Stage) -> None:
 
 def drawer_open_and_shut(s: Stage) -> None:
     """A drawer is pulled open, held for a second and pushed shut in one contact."""
-    performer(s, yaw_deg=70)
-    s.table()
+    at_table(s, yaw_deg=70)
     chest = cabinet(s, (0.64, -0.05, s.height + 0.012))
-    right = s.right(grip_hand())
-    right.idle(0.2)
+    right = s.right(grip_hand(), idle=0.2)
     seize(right, chest.drawer, chest.grip, 0.9, hold=0.3)
     pull(right, chest, 0.24, 1.1)
     right.hold(1.0, chest.drawer, chest.body)
@@ -97,12 +90,10 @@ def drawer_open_and_shut(s: Stage) -> None:
 
 def loaded_drawer_pulled_open(s: Stage) -> None:
     """Two apples ride in a drawer that is pulled open very slowly."""
-    performer(s, height=0.7, yaw_deg=-35, size=0.95, agent="old_man")
-    s.table()
+    at_table(s, height=0.7, yaw_deg=-35, size=0.95, agent="old_man")
     chest = cabinet(s, (0.64, -0.1, s.height + 0.012))
     fruits = [in_drawer(s, chest, 0.08, "red_apple"), in_drawer(s, chest, 0.18, "green_apple")]
-    right = s.right(grip_hand())
-    right.idle(0.2)
+    right = s.right(grip_hand(), idle=0.2)
     seize(right, chest.drawer, chest.grip, 1.4, hold=0.8)
     right.take_along(chest.drawer, *fruits)
     pull(right, chest, 0.22, 3.5)
@@ -112,12 +103,10 @@ def loaded_drawer_pulled_open(s: Stage) -> None:
 
 def loaded_drawer_pushed_shut(s: Stage) -> None:
     """A drawer with an apple in it is pushed shut quickly, at once on contact."""
-    performer(s, height=0.82, yaw_deg=240)
-    s.table()
+    at_table(s, height=0.82, yaw_deg=240)
     chest = cabinet(s, (0.66, -0.1, s.height + 0.012), out=0.25)
     fruit = in_drawer(s, chest, 0.12)
-    right = s.right(grip_hand())
-    right.idle(0.15)
+    right = s.right(grip_hand(), idle=0.15)
     seize(right, chest.drawer, chest.grip, 0.7)
     right.take_along(chest.drawer, fruit)
     push(right, chest, 0.25, 0.5)
@@ -127,11 +116,9 @@ def loaded_drawer_pushed_shut(s: Stage) -> None:
 
 def drawer_in_two_pulls(s: Stage) -> None:
     """A drawer is pulled half open, held, and pulled on; the hand stays on it."""
-    performer(s, yaw_deg=125, offset=(0.3, -2.0))
-    s.table()
+    at_table(s, yaw_deg=125, offset=(0.3, -2.0))
     chest = cabinet(s, (0.66, 0.15, s.height + 0.012))
-    left = s.left(grip_hand())
-    left.idle(0.2)
+    left = s.left(grip_hand(), idle=0.2)
     seize(left, chest.drawer, chest.grip, 0.9, hold=0.4)
     for far in (0.11, 0.13):
         pull(left, chest, far, 0.8)
@@ -140,8 +127,7 @@ def drawer_in_two_pulls(s: Stage) -> None:
 
 def apple_out_of_a_drawer(s: Stage) -> None:
     """The right hand opens a drawer and holds it; the left hand takes an apple out of it."""
-    performer(s, yaw_deg=-160)
-    table = s.table()
+    table = at_table(s, yaw_deg=-160)
     chest = cabinet(s, (0.72, -0.05, s.height + 0.012))
     fruit = in_drawer(s, chest, 0.12)
     right, left = s.right(grip_hand()), s.left(claw())
@@ -151,8 +137,7 @@ def apple_out_of_a_drawer(s: Stage) -> None:
     pull(right, chest, 0.24, 1.0)
     right.release()
     left.rest(right.clock)
-    left.reach(fruit, "+z", 1.0, up=1.0, fingers=LEFTWARD)
-    left.hold(0.4, fruit)
+    left.reach(fruit, "+z", 1.0, up=1.0, fingers=LEFTWARD, hold=0.4)
     left.take(fruit)
     left.lift_carry_lower(fruit, table, up=0.18, by=(0.0, 0.4), down=0.2 - SINK)
     left.hold(0.3, fruit, table)
@@ -162,14 +147,11 @@ def apple_out_of_a_drawer(s: Stage) -> None:
 
 def apple_into_a_drawer(s: Stage) -> None:
     """An apple is put into an open drawer, and after a rest the same hand pushes it shut."""
-    performer(s, height=0.72, yaw_deg=50)
-    s.table()
+    at_table(s, height=0.72, yaw_deg=50)
     chest = cabinet(s, (0.74, 0.15, s.height + 0.012), out=0.24)
     fruit = apple(s, (0.5, -0.35))
-    right = s.right(claw())
-    right.idle(0.2)
-    right.reach(fruit, "+z", 0.9, up=1.0, fingers=LEFTWARD)
-    right.hold(0.3, fruit)
+    right = s.right(claw(), idle=0.2)
+    right.reach(fruit, "+z", 0.9, up=1.0, fingers=LEFTWARD, hold=0.3)
     right.take(fruit)
     down = 0.22 - 0.012 - FLOOR_M
     paused(right, fruit, chest.drawer, up=0.22, by=(0.12, 0.5), down=down, holds=(0.0, 0.4))
@@ -185,25 +167,20 @@ def apple_into_a_drawer(s: Stage) -> None:
 
 def drawer_ajar_pulled_further(s: Stage) -> None:
     """A drawer that is never seen shut is pulled further out."""
-    performer(s, height=0.85, yaw_deg=-10)
-    s.table()
+    at_table(s, height=0.85, yaw_deg=-10)
     chest = cabinet(s, (0.68, -0.1, s.height + 0.012), out=0.06)
-    right = s.right(grip_hand())
-    right.idle(0.2)
+    right = s.right(grip_hand(), idle=0.2)
     seize(right, chest.drawer, chest.grip, 0.9, hold=0.4)
-    travel(right, "Pull", (-0.18, 0.0, 0.0), 0.9, chest.drawer, chest.body)
-    right.hold(0.5, chest.drawer, chest.body)
+    travel(right, "Pull", (-0.18, 0.0, 0.0), 0.9, chest.drawer, chest.body, hold=0.5)
     home_again(right, 0.8)
     right.alternative = other_names(right, Pull="Open")
 
 
 def drawer_half_shut_and_shut(s: Stage) -> None:
     """A drawer is pushed half way, let go of, and after a rest pushed shut."""
-    performer(s, yaw_deg=165, size=1.04)
-    s.table()
+    at_table(s, yaw_deg=165, size=1.04)
     chest = cabinet(s, (0.68, 0.1, s.height + 0.012), out=0.24)
-    left = s.left(grip_hand())
-    left.idle(0.2)
+    left = s.left(grip_hand(), idle=0.2)
     seize(left, chest.drawer, chest.grip, 0.9, hold=0.3)
     push(left, chest, 0.12, 0.7)
     left.hold(0.3, chest.drawer, chest.body)
@@ -216,11 +193,9 @@ def drawer_half_shut_and_shut(s: Stage) -> None:
 
 def drawer_handle_only_touched(s: Stage) -> None:
     """The handle of a shut drawer is held for a while, and nothing moves."""
-    performer(s, yaw_deg=-75)
-    s.table()
+    at_table(s, yaw_deg=-75)
     chest = cabinet(s, (0.66, -0.1, s.height + 0.012))
-    right = s.right(grip_hand())
-    right.idle(0.2)
+    right = s.right(grip_hand(), idle=0.2)
     seize(right, chest.drawer, chest.grip, 1.0, hold=1.5, take=False)
     home_again(right, 0.9)
 
@@ -233,11 +208,9 @@ def swing(hand: Hand, press: Cupboard, angle_deg: float, duration: float) -> Non
 
 def door_opened(s: Stage) -> None:
     """A cupboard's door is opened by its handle and let go of."""
-    performer(s, yaw_deg=35)
-    s.table()
+    at_table(s, yaw_deg=35)
     press = cupboard(s, (0.7, -0.1, s.height + 0.012), side="right")
-    right = s.right(grip_hand())
-    right.idle(0.2)
+    right = s.right(grip_hand(), idle=0.2)
     seize(right, press.leaf, press.grip, 1.0, hold=0.4)
     swing(right, press, 70.0, 1.3)
     right.hold(0.4, press.leaf, press.body)
@@ -246,12 +219,10 @@ def door_opened(s: Stage) -> None:
 
 def door_shut(s: Stage) -> None:
     """A door that stands open is shut; the hand stays on its handle."""
-    performer(s, height=0.85, yaw_deg=-145, size=1.05)
-    s.table()
+    at_table(s, height=0.85, yaw_deg=-145, size=1.05)
     press = cupboard(s, (0.72, -0.1, s.height + 0.012), side="right")
     press.hinge.opened(press.leaf, 60.0)
-    right = s.right(grip_hand())
-    right.idle(0.2)
+    right = s.right(grip_hand(), idle=0.2)
     seize(right, press.leaf, press.grip, 1.0, hold=0.3)
     swing(right, press, -60.0, 1.1)
     right.hold(0.7, press.leaf, press.body)
@@ -259,11 +230,9 @@ def door_shut(s: Stage) -> None:
 
 def door_opened_with_the_left_hand(s: Stage) -> None:
     """A door with its hinge on the left is opened quickly, at once on contact."""
-    performer(s, height=0.66, yaw_deg=85, size=0.92, agent="boy")
-    s.table()
+    at_table(s, height=0.66, yaw_deg=85, size=0.92, agent="boy")
     press = cupboard(s, (0.66, 0.1, s.height + 0.012), side="left", width=0.3)
-    left = s.left(grip_hand())
-    left.idle(0.15)
+    left = s.left(grip_hand(), idle=0.15)
     seize(left, press.leaf, press.grip, 0.8)
     swing(left, press, 80.0, 0.9)
     left.hold(0.5, press.leaf, press.body)
@@ -272,11 +241,9 @@ def door_opened_with_the_left_hand(s: Stage) -> None:
 
 def door_opened_in_two_stages(s: Stage) -> None:
     """A door is opened a little, held for a second, and opened further."""
-    performer(s, height=0.74, yaw_deg=200)
-    s.table()
+    at_table(s, height=0.74, yaw_deg=200)
     press = cupboard(s, (0.7, -0.15, s.height + 0.012), side="right")
-    right = s.right(grip_hand())
-    right.idle(0.2)
+    right = s.right(grip_hand(), idle=0.2)
     seize(right, press.leaf, press.grip, 0.9, hold=0.3)
     swing(right, press, 35.0, 1.0)
     right.hold(1.0, press.leaf, press.body)
@@ -286,11 +253,9 @@ def door_opened_in_two_stages(s: Stage) -> None:
 
 def door_opened_and_shut_later(s: Stage) -> None:
     """A door is opened and let go of; after a rest at home the same hand shuts it."""
-    performer(s, yaw_deg=-20)
-    s.table()
+    at_table(s, yaw_deg=-20)
     press = cupboard(s, (0.72, 0.1, s.height + 0.012), side="left")
-    left = s.left(grip_hand())
-    left.idle(0.2)
+    left = s.left(grip_hand(), idle=0.2)
     seize(left, press.leaf, press.grip, 1.0, hold=0.3)
     swing(left, press, 55.0, 1.2)
     left.hold(0.3, press.leaf, press.body)
@@ -304,11 +269,9 @@ def door_opened_and_shut_later(s: Stage) -> None:
 
 def door_opened_and_shut_at_once(s: Stage) -> None:
     """A door is opened, held for half a second and shut in one contact, slowly."""
-    performer(s, height=0.7, yaw_deg=110, size=0.96, agent="old_woman")
-    s.table()
+    at_table(s, height=0.7, yaw_deg=110, size=0.96, agent="old_woman")
     press = cupboard(s, (0.7, -0.1, s.height + 0.012), side="right")
-    right = s.right(grip_hand())
-    right.idle(0.2)
+    right = s.right(grip_hand(), idle=0.2)
     seize(right, press.leaf, press.grip, 1.3, hold=0.6)
     swing(right, press, 45.0, 2.2)
     right.hold(0.5, press.leaf, press.body)
@@ -319,12 +282,10 @@ def door_opened_and_shut_at_once(s: Stage) -> None:
 
 def door_pushed_shut_with_the_palm(s: Stage) -> None:
     """A door that stands open is shut with the flat palm on its outer face."""
-    performer(s, yaw_deg=-60)
-    s.table()
+    at_table(s, yaw_deg=-60)
     press = cupboard(s, (0.72, 0.0, s.height + 0.012), side="right")
     press.hinge.opened(press.leaf, 50.0)
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     seize(right, press.leaf, press.face, 1.0)
     swing(right, press, -50.0, 1.0)
     right.hold(0.5, press.leaf, press.body)
@@ -333,8 +294,7 @@ def door_pushed_shut_with_the_palm(s: Stage) -> None:
 
 def mug_out_of_a_cupboard(s: Stage) -> None:
     """The right hand opens a door and holds it; the left hand takes a mug out to the table."""
-    performer(s, height=0.78, yaw_deg=15)
-    table = s.table()
+    table = at_table(s, height=0.78, yaw_deg=15)
     press = cupboard(s, (0.68, 0.0, s.height + 0.012), side="right")
     mug = cup(s, (0.77, 0.02, s.height + 0.012))
     right, left = s.right(grip_hand()), s.left(claw())
@@ -351,23 +311,19 @@ def mug_out_of_a_cupboard(s: Stage) -> None:
 
 def door_only_touched(s: Stage) -> None:
     """A palm lies on a shut door for two seconds."""
-    performer(s, height=0.8, yaw_deg=175)
-    s.table()
+    at_table(s, height=0.8, yaw_deg=175)
     press = cupboard(s, (0.7, 0.05, s.height + 0.012), side="left")
-    left = s.left()
-    left.idle(0.2)
+    left = s.left(idle=0.2)
     seize(left, press.leaf, press.face, 1.0, hold=2.0, take=False)
     home_again(left, 0.9)
 
 
 def from_a_stool_to_the_table(s: Stage) -> None:
     """A block is taken from a stool and put on the table in one sweep."""
-    performer(s, yaw_deg=45)
-    table = s.table()
+    table = at_table(s, yaw_deg=45)
     pillar(s, "stool", (0.4, -0.95, 0.5), (0.35, 0.35), "stool")
     cube = toy(s, (0.45, -0.95, 0.5))
-    right = s.right(claw(), home=(0.12, -0.6, 0.86))
-    right.idle(0.2)
+    right = s.right(claw(), home=(0.12, -0.6, 0.86), idle=0.2)
     fetch(right, cube, "+z", 1.0, 1.0, 0.3)
     right.lift_carry_lower(cube, table, up=0.42, by=(0.05, 0.65), down=0.18, times=(1.0, 1.1, 0.8))
     finish(right, cube, table, 0.3, 1.2)
@@ -375,12 +331,10 @@ def from_a_stool_to_the_table(s: Stage) -> None:
 
 def from_the_table_to_a_stool(s: Stage) -> None:
     """The left hand takes a can from the table and stands it on a stool, pausing once."""
-    performer(s, height=0.7, yaw_deg=-130, size=0.95)
-    s.table(width=1.0)
+    at_table(s, height=0.7, yaw_deg=-130, size=0.95, width=1.0)
     stool = pillar(s, "stool", (0.45, 0.85, 0.52), (0.35, 0.35), "stool")
     tin = can(s, (0.45, 0.3))
-    left = s.left()
-    left.idle(0.2)
+    left = s.left(idle=0.2)
     fetch(left, tin, "+z", 0.9, 1.0, 0.0)
     paused(left, tin, stool, up=0.1, by=(0.0, 0.55), down=0.28, holds=(0.0, 0.6))
     finish(left, tin, stool, 0.4, 1.2)
@@ -388,12 +342,10 @@ def from_the_table_to_a_stool(s: Stage) -> None:
 
 def down_from_a_shelf(s: Stage) -> None:
     """A can is drawn over the edge of a shelf, hardly lifted, and brought down on the table."""
-    performer(s, height=0.74, yaw_deg=70, size=1.05)
-    table = s.table()
+    table = at_table(s, height=0.74, yaw_deg=70, size=1.05)
     shelf(s, (0.75, -0.2, s.height + 0.3))
     tin = can(s, (0.65, -0.2, s.height + 0.3))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, tin, "+z", 1.0, 1.0, 0.4)
     right.over(0.03, (-0.22, 0.45), 0.33, times=(0.5, 1.1, 1.0), overlap=0.3)
     right.step("MoveObjTo", tin, table)
@@ -403,12 +355,10 @@ def down_from_a_shelf(s: Stage) -> None:
 
 def up_onto_a_shelf(s: Stage) -> None:
     """A can is raised to a shelf and slipped onto it, with hardly any sinking at the end."""
-    performer(s, height=0.72, yaw_deg=-15)
-    s.table()
+    at_table(s, height=0.72, yaw_deg=-15)
     board = shelf(s, (0.8, 0.25, s.height + 0.25))
     tin = can(s, (0.45, 0.2))
-    left = s.left()
-    left.idle(0.2)
+    left = s.left(idle=0.2)
     fetch(left, tin, "+z", 0.9, 1.0, 0.4)
     left.over(0.275, (0.3, 0.0), 0.025, times=(1.0, 0.9, 0.4), overlap=0.2)
     left.step("MoveObjTo", tin, board)
@@ -418,12 +368,10 @@ def up_onto_a_shelf(s: Stage) -> None:
 
 def flat_over_a_gap(s: Stage) -> None:
     """A can goes from one table to another of the same height, three centimetres over both."""
-    performer(s, height=0.8, yaw_deg=155)
-    s.table(width=0.7)
+    at_table(s, height=0.8, yaw_deg=155, width=0.7)
     side = pillar(s, "side_table", (0.55, 0.75, 0.8), (0.5, 0.5), "side_table")
     tin = can(s, (0.5, 0.25))
-    left = s.left()
-    left.idle(0.2)
+    left = s.left(idle=0.2)
     fetch(left, tin, "+z", 0.8, 1.0, 0.3)
     left.hop(0.03, (0.0, 0.42, 0.0), 0.9)
     left.step("MoveObjTo", tin, side)
@@ -433,10 +381,8 @@ def flat_over_a_gap(s: Stage) -> None:
 
 def carried_low(s: Stage) -> None:
     """A mug is carried half a metre, seven centimetres over the table."""
-    performer(s, yaw_deg=-85)
-    table, mug = s.table(), cup(s, (0.5, -0.3))
-    right = s.right()
-    right.idle(0.2)
+    table, mug = at_table(s, yaw_deg=-85), cup(s, (0.5, -0.3))
+    right = s.right(idle=0.2)
     fetch(right, mug, "-y", 0.9, 0.6, 0.4)
     right.lift_carry_lower(mug, table, up=0.07, by=(0.05, 0.5), down=0.07, times=(0.6, 1.3, 0.6))
     finish(right, mug, table, 0.4, 0.9)
@@ -446,8 +392,7 @@ def carried_high_and_fast(s: Stage) -> None:
     """A tall woman swings a can over in a high arc at more than a metre a second."""
     performer(s, height=0.88, yaw_deg=10, size=1.06, agent="tall_woman")
     table, tin = s.table(), can(s, (0.5, 0.35))
-    left = s.left()
-    left.idle(0.15)
+    left = s.left(idle=0.15)
     fetch(left, tin, "+z", 0.8, 1.0, 0.0)
     left.lift_carry_lower(tin, table, up=0.36, by=(0.1, -0.55), down=0.36, times=(0.65, 0.95, 0.7))
     finish(left, tin, table, 0.3, 0.9)
@@ -455,11 +400,9 @@ def carried_high_and_fast(s: Stage) -> None:
 
 def up_and_down_past_a_rim(s: Stage) -> None:
     """A block hops over a low wall: up and down more than aside."""
-    performer(s, yaw_deg=265)
-    table, cube = s.table(), toy(s, (0.5, -0.15))
+    table, cube = at_table(s, yaw_deg=265), toy(s, (0.5, -0.15))
     s.put("partition", shapes.box(0.3, 0.01, 0.08, "partition"), (0.5, -0.08), tag="fixed")
-    right = s.right(claw())
-    right.idle(0.2)
+    right = s.right(claw(), idle=0.2)
     fetch(right, cube, "+z", 0.9, 1.0, 0.3)
     highest = right.hop(0.28, (0.0, 0.14, 0.0), 1.4)
     end, right.clock = right.clock, highest
@@ -473,15 +416,11 @@ def carried_with_a_long_pause(s: Stage) -> None:
     """A mug is lifted, carried half way, held for five seconds, carried on and put down."""
     performer(s, height=0.68, yaw_deg=100, size=0.93, agent="old_man")
     table, mug = s.table(), cup(s, (0.5, -0.35))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     fetch(right, mug, "-y", 1.2, 0.6, 0.5)
-    travel(right, "Lift", (0.0, 0.0, 0.18), 1.0, mug)
-    right.hold(0.4, mug)
-    travel(right, "Carry", (0.0, 0.3, 0.0), 1.6, mug)
-    right.hold(5.0, mug)
-    travel(right, "Carry", (0.05, 0.3, 0.0), 1.6, mug)
-    right.hold(0.4, mug)
+    travel(right, "Lift", (0.0, 0.0, 0.18), 1.0, mug, hold=0.4)
+    travel(right, "Carry", (0.0, 0.3, 0.0), 1.6, mug, hold=5.0)
+    travel(right, "Carry", (0.05, 0.3, 0.0), 1.6, mug, hold=0.4)
     travel(right, "Lower", (0.0, 0.0, -0.18), 1.0, mug, table)
     finish(right, mug, table, 0.5, 1.2)
 
@@ -494,14 +433,12 @@ def stool_pushed_over_the_floor(s: Stage) -> None:
     hands = [s.right(), s.left()]
     for hand, aside in zip(hands, (-0.12, 0.12), strict=True):
         hand.idle(0.2)
-        hand.reach(stool, "-x", 0.9, up=0.8, fingers=UP, aside=(0.0, aside, 0.0))
-        hand.hold(0.5, stool)
+        hand.reach(stool, "-x", 0.9, up=0.8, fingers=UP, aside=(0.0, aside, 0.0), hold=0.5)
     right, left = hands
     since = len(right.steps)
     left.join(stool)
     right.take(stool)
-    travel(right, "Push", (0.35, 0.0, 0.0), 1.3, stool, ground)
-    right.hold(0.5, stool, ground)
+    travel(right, "Push", (0.35, 0.0, 0.0), 1.3, stool, ground, hold=0.5)
     left.part(right, since)
     both_leave(hands, 0.9)
 
@@ -514,8 +451,7 @@ def stool_lifted_and_set_down(s: Stage) -> None:
     hands = [s.right(), s.left()]
     for hand, side in zip(hands, ("-y", "+y"), strict=True):
         hand.idle(0.2)
-        hand.reach(stool, side, 1.0, up=0.8)
-        hand.hold(0.4, stool)
+        hand.reach(stool, side, 1.0, up=0.8, hold=0.4)
     right, left = hands
     since = len(right.steps)
     left.join(stool)
@@ -531,10 +467,8 @@ def can_kept_on_a_stool(s: Stage) -> None:
     performer(s, height=0.55, yaw_deg=-70)
     pillar(s, "stool", (0.5, -0.1, 0.55), (0.35, 0.35), "stool")
     tin = can(s, (0.5, -0.1, 0.55))
-    right = s.right()
-    right.idle(0.2)
-    right.reach(tin, "-y", 0.9, up=0.6)
-    right.hold(2.0, tin)
+    right = s.right(idle=0.2)
+    right.reach(tin, "-y", 0.9, up=0.6, hold=2.0)
     home_again(right, 0.9)
 
 
@@ -549,85 +483,65 @@ def handled_box(s: Stage, at: tuple[float, float]) -> Thing:
 
 def box_pushed_against_a_wall(s: Stage) -> None:
     """A box is pushed over the table until it meets the wall, and held there."""
-    performer(s, yaw_deg=5)
-    s.table()
+    at_table(s, yaw_deg=5)
     behind = wall(s, 1.02)
     box = s.put("box", shapes.box(0.16, 0.2, 0.14), (0.7, -0.1))
-    right = s.right()
-    right.idle(0.2)
-    right.reach(box, "-x", 0.9, fingers=UP)
-    right.hold(0.4, box)
+    right = s.right(idle=0.2)
+    right.reach(box, "-x", 0.9, fingers=UP, hold=0.4)
     right.take(box)
-    travel(right, "Push", (0.2402, 0.0, 0.0), 1.0, box, behind)
-    right.hold(0.6, box, behind)
+    travel(right, "Push", (0.2402, 0.0, 0.0), 1.0, box, behind, hold=0.6)
     home_again(right, 0.9)
 
 
 def box_pushed_against_a_wall_at_once(s: Stage) -> None:
     """The left hand pushes a carton to the wall at once on contact, fast, and stays on it."""
-    performer(s, height=0.9, yaw_deg=-140, size=1.05)
-    s.table()
+    at_table(s, height=0.9, yaw_deg=-140, size=1.05)
     behind = wall(s, 1.0)
     box = s.put("carton", shapes.carton(0.18, 0.22, 0.16), (0.6, 0.1))
-    left = s.left()
-    left.idle(0.15)
+    left = s.left(idle=0.15)
     left.reach(box, "-x", 0.8, fingers=UP)
     left.take(box)
-    travel(left, "Push", (0.3102, 0.0, 0.0), 0.7, box, behind)
-    left.hold(0.7, box, behind)
+    travel(left, "Push", (0.3102, 0.0, 0.0), 0.7, box, behind, hold=0.7)
 
 
 def box_pulled_off_a_wall(s: Stage) -> None:
     """A box that stands against the wall is pulled away from it by its handle."""
-    performer(s, height=0.78, yaw_deg=65)
-    table = s.table()
+    table = at_table(s, height=0.78, yaw_deg=65)
     wall(s, 0.98)
     box = handled_box(s, (0.9, -0.1))
-    right = s.right(grip_hand())
-    right.idle(0.2)
+    right = s.right(grip_hand(), idle=0.2)
     seize(right, box, HANDLE, 0.9, hold=0.4)
-    travel(right, "Pull", (-0.28, 0.0, 0.0), 1.1, box, table)
-    right.hold(0.5, box, table)
+    travel(right, "Pull", (-0.28, 0.0, 0.0), 1.1, box, table, hold=0.5)
     home_again(right, 0.8)
 
 
 def box_pulled_and_pushed_back(s: Stage) -> None:
     """A box is pulled near very slowly, held, and pushed back by its handle."""
-    performer(s, height=0.7, yaw_deg=-80, size=0.95, agent="old_woman")
-    table = s.table()
+    table = at_table(s, height=0.7, yaw_deg=-80, size=0.95, agent="old_woman")
     box = handled_box(s, (0.8, 0.1))
-    left = s.left(grip_hand())
-    left.idle(0.2)
+    left = s.left(grip_hand(), idle=0.2)
     seize(left, box, HANDLE, 1.2, hold=0.5)
-    travel(left, "Pull", (-0.22, 0.0, 0.0), 3.8, box, table)
-    left.hold(1.0, box, table)
-    travel(left, "Push", (0.2, 0.0, 0.0), 2.5, box, table)
-    left.hold(0.6, box, table)
+    travel(left, "Pull", (-0.22, 0.0, 0.0), 3.8, box, table, hold=1.0)
+    travel(left, "Push", (0.2, 0.0, 0.0), 2.5, box, table, hold=0.6)
 
 
 def plate_slid_aside(s: Stage) -> None:
     """A palm on a plate slides it to the right and goes home."""
-    performer(s, yaw_deg=170)
-    table = s.table()
+    table = at_table(s, yaw_deg=170)
     plate = s.put("plate", shapes.box(0.2, 0.2, 0.03, "plate"), (0.55, 0.1))
-    right = s.right()
-    right.idle(0.2)
+    right = s.right(idle=0.2)
     right.reach(plate, "+z", 0.9, up=1.0)
     right.take(plate)
-    travel(right, "Slide", (0.05, -0.35, 0.0), 1.0, plate, table)
-    right.hold(0.4, plate, table)
+    travel(right, "Slide", (0.05, -0.35, 0.0), 1.0, plate, table, hold=0.4)
     home_again(right, 0.9)
 
 
 def pot_turned_on_the_table(s: Stage) -> None:
     """A pot is turned by sixty degrees where it stands; the hand stays on its side."""
-    performer(s, height=0.86, yaw_deg=-30, size=1.03)
-    table = s.table()
+    table = at_table(s, height=0.86, yaw_deg=-30, size=1.03)
     pot = s.put("pot", forms.pot(), (0.5, 0.05))
-    left = s.left()
-    left.idle(0.2)
-    left.reach(pot, "+y", 0.9, up=0.5)
-    left.hold(0.4, pot)
+    left = s.left(idle=0.2)
+    left.reach(pot, "+y", 0.9, up=0.5, hold=0.4)
     left.take(pot)
     left.spin((0.5, 0.05, 0.0), UP, -60.0, 1.3)
     left.step("Turn", pot, table)
@@ -636,27 +550,23 @@ def pot_turned_on_the_table(s: Stage) -> None:
 
 def beside_a_box_that_another_hand_pulls(s: Stage) -> None:
     """The right hand pulls a box near; the left hand rests in the air five centimetres beside."""
-    performer(s, yaw_deg=50)
-    table = s.table()
+    table = at_table(s, yaw_deg=50)
     box = handled_box(s, (0.8, -0.05))
     right = s.right(grip_hand())
     left = s.left(home=(0.62, 0.1, s.height + 0.1))
     right.idle(0.2)
     seize(right, box, HANDLE, 0.9, hold=0.4)
-    travel(right, "Pull", (-0.24, 0.0, 0.0), 1.2, box, table)
-    right.hold(0.5, box, table)
+    travel(right, "Pull", (-0.24, 0.0, 0.0), 1.2, box, table, hold=0.5)
     left.rest(right.clock)
 
 
 def along_with_a_box_that_another_hand_pushes(s: Stage) -> None:
     """The left hand pushes a box; the right hand goes along beside it and never touches it."""
-    performer(s, height=0.8, yaw_deg=-105)
-    table = s.table()
+    table = at_table(s, height=0.8, yaw_deg=-105)
     box = s.put("box", shapes.box(0.16, 0.2, 0.16), (0.5, 0.1))
     left, right = s.left(), s.right(home=(0.42, -0.07, s.height + 0.1))
     left.idle(0.2)
-    left.reach(box, "-x", 0.9, fingers=UP)
-    left.hold(0.4, box)
+    left.reach(box, "-x", 0.9, fingers=UP, hold=0.4)
     right.rest(left.clock)
     left.take(box)
     travel(left, "Push", (0.3, 0.0, 0.0), 1.2, box, table)
@@ -667,26 +577,21 @@ def along_with_a_box_that_another_hand_pushes(s: Stage) -> None:
 
 def lean_on_the_table(s: Stage) -> None:
     """Both palms are laid on the table, stay for three seconds and are taken away."""
-    performer(s, yaw_deg=-60)
-    table = s.table(depth=0.6)
+    table = at_table(s, yaw_deg=-60, depth=0.6)
     hands = [s.right(), s.left()]
     for hand, aside in zip(hands, (-0.25, 0.25), strict=True):
         hand.idle(0.2)
-        hand.reach(table, "+z", 0.9, up=1.0, aside=(-0.1, aside, 0.0))
-        hand.hold(3.0, table)
+        hand.reach(table, "+z", 0.9, up=1.0, aside=(-0.1, aside, 0.0), hold=3.0)
         home_again(hand, 0.9)
 
 
 def lean_on_a_wall(s: Stage) -> None:
     """The left palm leans on a wall for two seconds; an apple lies on the table."""
-    performer(s, height=0.8, yaw_deg=40, size=1.06)
-    s.table()
+    at_table(s, height=0.8, yaw_deg=40, size=1.06)
     apple(s, (0.5, -0.3))
     behind = wall(s, 0.75)
-    left = s.left()
-    left.idle(0.2)
-    left.reach(behind, "-x", 1.0, up=0.8, fingers=UP, aside=(0.0, 0.2, 0.0))
-    left.hold(2.0, behind)
+    left = s.left(idle=0.2)
+    left.reach(behind, "-x", 1.0, up=0.8, fingers=UP, aside=(0.0, 0.2, 0.0), hold=2.0)
     home_again(left, 1.0)
 
 
@@ -694,21 +599,16 @@ def touch_a_shelf_from_below(s: Stage) -> None:
     """The palm is put to a shelf from below and stays there."""
     performer(s, height=0.6, yaw_deg=150)
     board = shelf(s, (0.55, -0.15, 1.15))
-    right = s.right()
-    right.idle(0.2)
-    right.reach(board, "-z", 1.1, up=0.0)
-    right.hold(1.0, board)
+    right = s.right(idle=0.2)
+    right.reach(board, "-z", 1.1, up=0.0, hold=1.0)
 
 
 def touch_a_cabinet(s: Stage) -> None:
     """The palm lies on top of a cabinet whose drawer is shut, and goes home."""
-    performer(s, height=0.7, yaw_deg=-15, size=0.96)
-    s.table()
+    at_table(s, height=0.7, yaw_deg=-15, size=0.96)
     chest = cabinet(s, (0.6, 0.1, s.height + 0.012))
-    left = s.left()
-    left.idle(0.2)
-    left.reach(chest.body, "+z", 1.0, up=1.0, aside=(-0.05, 0.0, 0.0))
-    left.hold(0.8, chest.body)
+    left = s.left(idle=0.2)
+    left.reach(chest.body, "+z", 1.0, up=1.0, aside=(-0.05, 0.0, 0.0), hold=0.8)
     home_again(left, 1.0)
 
 
@@ -716,34 +616,28 @@ def touch_a_stool(s: Stage) -> None:
     """A child lays the left hand on a stool for a quarter of a second."""
     performer(s, height=0.4, yaw_deg=105, size=0.76, agent="child")
     stool = pillar(s, "stool", (0.4, 0.1, 0.4), (0.3, 0.3), "stool")
-    left = s.left()
-    left.idle(0.15)
-    left.reach(stool, "+z", 0.7, up=1.0)
-    left.hold(0.25, stool)
+    left = s.left(idle=0.15)
+    left.reach(stool, "+z", 0.7, up=1.0, hold=0.25)
     left.leave(0.7)
     left.idle(0.15)
 
 
 def past_a_pot(s: Stage) -> None:
     """The hand goes past a pot with a lid, six centimetres from its side, and touches nothing."""
-    performer(s, yaw_deg=85)
-    s.table()
+    at_table(s, yaw_deg=85)
     s.put("pot", forms.pot(), (0.62, 0.0))
     s.put("lid", forms.round_lid(0.112), (0.62, 0.0, s.height + 0.12))
-    right = s.right(home=(0.3, -0.35, s.height + 0.12))
-    right.idle(0.2)
+    right = s.right(home=(0.3, -0.35, s.height + 0.12), idle=0.2)
     right.go((0.3, 0.3, s.height + 0.14), 1.3)
     right.idle(0.2)
 
 
 def over_a_crate_and_back(s: Stage) -> None:
     """The hand goes over the opening of a crate, rests there for a second, and goes home."""
-    performer(s, height=0.76, yaw_deg=-120)
-    s.table()
+    at_table(s, height=0.76, yaw_deg=-120)
     crate(s, (0.6, -0.1))
     apple(s, (0.6, -0.1, s.height + 0.008))
-    right = s.right(home=(0.12, -0.28, s.height + 0.25))
-    right.idle(0.2)
+    right = s.right(home=(0.12, -0.28, s.height + 0.25), idle=0.2)
     right.go((0.58, -0.1, s.height + 0.24), 1.0)
     right.rest(1.0)
     right.go(None, 1.0)
@@ -752,11 +646,9 @@ def over_a_crate_and_back(s: Stage) -> None:
 
 def into_a_crate_and_out(s: Stage) -> None:
     """The hand is put into a large crate, rests in it without touching, and is taken out."""
-    performer(s, height=0.65, yaw_deg=25, size=1.02)
-    s.table()
+    at_table(s, height=0.65, yaw_deg=25, size=1.02)
     s.put("crate", forms.open_box(0.5, 0.5, 0.2, "crate"), (0.62, 0.05))
-    left = s.left(home=(0.55, 0.1, s.height + 0.4))
-    left.idle(0.2)
+    left = s.left(home=(0.55, 0.1, s.height + 0.4), idle=0.2)
     left.go((0.55, 0.1, s.height + 0.12), 0.9)
     left.rest(0.9)
     left.go(None, 0.9)
@@ -765,8 +657,7 @@ def into_a_crate_and_out(s: Stage) -> None:
 
 def apple_kept_in_the_air(s: Stage) -> None:
     """An apple is held still above a bowl from the first frame to the last."""
-    performer(s, yaw_deg=-5)
-    s.table()
+    at_table(s, yaw_deg=-5)
     s.put("bowl", shapes.vessel(0.12, 0.07, "bowl"), (0.55, -0.1))
     fruit = apple(s, (0.55, -0.1, s.height + 0.2))
     right = s.right()
@@ -777,8 +668,7 @@ def apple_kept_in_the_air(s: Stage) -> None:
 
 def hands_rest_beside_furniture(s: Stage) -> None:
     """Both hands rest in the air before a cabinet and a bowl with an apple in it."""
-    performer(s, height=0.82, yaw_deg=135)
-    s.table()
+    at_table(s, height=0.82, yaw_deg=135)
     cabinet(s, (0.65, 0.25, s.height + 0.012))
     s.put("bowl", shapes.vessel(0.12, 0.07, "bowl"), (0.5, -0.25))
     apple(s, (0.5, -0.25, s.height + 0.005))

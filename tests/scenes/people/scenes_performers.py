@@ -16,7 +16,7 @@ from capar.body.scripts import (
 )
 from scenes.hands import shapes
 from scenes.hands.paths import facing, pose
-from scenes.hands.performer import PRESS
+from scenes.hands.performer import PRESS, travel
 from scenes.hands.scene import performer
 from scenes.hands.things import Thing
 from scenes.people.body import START_S, Person
@@ -36,7 +36,7 @@ def slab(depth: float = 0.6, width: float = 1.2) -> shapes.Form:
     return shapes.box(depth, width, 0.03, "table")
 
 
-def at_table(
+def performing_at_table(
     s: PeopleStage, who: str, script: Script, name: str, form: shapes.Form,
     ahead: float, aside: float, *, top: float = 0.52, around: bool = False,
 ) -> Figure:  # fmt: skip
@@ -54,7 +54,7 @@ def touched(s: PeopleStage, who: str, side: str, *, seconds: float, aside: float
     """A hand is laid on a crate, and goes back."""
     script = at_pace(touch("crate", side=side, seconds=seconds), pace)
     crate = shapes.box(0.15, 0.2, 0.15, "crate")
-    f = at_table(s, who, script, "crate", crate, 0.24, aside)
+    f = performing_at_table(s, who, script, "crate", crate, 0.24, aside)
     f.does(
         side,
         (0, "Rest", ()),
@@ -127,7 +127,7 @@ def woman_carries_a_mug(s: PeopleStage) -> None:
     script = moved_about(
         "mug", "right", (("up", 0.9, LIFT), ("on", 1.0, way), ("down", 0.9, LOWER))
     )
-    f = at_table(s, "woman", script, "mug", shapes.vessel(0.036, 0.1), 0.22, -0.12)
+    f = performing_at_table(s, "woman", script, "mug", shapes.vessel(0.036, 0.1), 0.22, -0.12)
     told(f, "right", "mug", STACKED)
 
 
@@ -136,7 +136,7 @@ def child_carries_a_mug_with_the_left_hand(s: PeopleStage) -> None:
     performer(s, yaw_deg=110)
     way = Move((0.02, -0.15, 0.0))
     script = moved_about("mug", "left", (("up", 0.9, LIFT), ("on", 1.0, way), ("down", 1.0, LOWER)))
-    f = at_table(s, "child", script, "mug", shapes.vessel(0.032, 0.09), 0.22, 0.12)
+    f = performing_at_table(s, "child", script, "mug", shapes.vessel(0.032, 0.09), 0.22, 0.12)
     told(f, "left", "mug", STACKED)
 
 
@@ -144,7 +144,7 @@ def man_lifts_a_mug_and_puts_it_back(s: PeopleStage) -> None:
     """A man lifts a mug straight up and lowers it at once."""
     performer(s, yaw_deg=-175)
     script = moved_about("mug", "right", (("up", 0.9, LIFT), ("down", 0.9, LOWER)))
-    f = at_table(s, "man", script, "mug", shapes.vessel(0.038, 0.1), 0.23, -0.12)
+    f = performing_at_table(s, "man", script, "mug", shapes.vessel(0.038, 0.1), 0.23, -0.12)
     told(f, "right", "mug", (("Lift", ("mug",)), ("Lower", ("mug", "table"))))
 
 
@@ -152,7 +152,7 @@ def lifted(s: PeopleStage, who: str, *, height: float, pace: float, ahead: float
     """A crate is lifted between both palms, held, and put back."""
     script = at_pace(lift_with_both_hands("crate", height=height), pace)
     crate = shapes.box(0.2, 0.24, 0.16, "crate")
-    f = at_table(s, who, script, "crate", crate, ahead, 0.0)
+    f = performing_at_table(s, who, script, "crate", crate, ahead, 0.0)
     for side in ("right", "left"):
         f.does(
             side,
@@ -191,7 +191,7 @@ def woman_pushes_a_mug_aside(s: PeopleStage) -> None:
     """A woman pushes a mug over the table to the left with her right palm."""
     performer(s, yaw_deg=-15)
     script = moved_about("mug", "right", (("push", 1.1, Move((0.0, 0.14, 0.0))),))
-    f = at_table(s, "woman", script, "mug", shapes.vessel(0.036, 0.1), 0.22, -0.14)
+    f = performing_at_table(s, "woman", script, "mug", shapes.vessel(0.036, 0.1), 0.22, -0.14)
     told(f, "right", "mug", (("Push", ("mug", "table")),))
 
 
@@ -201,7 +201,7 @@ def man_lifts_a_jar_with_the_left_hand(s: PeopleStage) -> None:
     script = moved_about(
         "jar", "left", (("up", 0.8, LIFT), ("stay", 0.8, Move()), ("down", 0.9, LOWER))
     )
-    f = at_table(s, "man", script, "jar", shapes.vessel(0.034, 0.11, "jar"), 0.24, 0.12)
+    f = performing_at_table(s, "man", script, "jar", shapes.vessel(0.034, 0.11, "jar"), 0.24, 0.12)
     told(f, "left", "jar", (("Lift", ("jar",)), ("Touch", ("jar",)), ("Lower", ("jar", "table"))))
 
 
@@ -209,7 +209,7 @@ def child_pushes_a_mug_aside(s: PeopleStage) -> None:
     """A child pushes a mug over the table to the right with the left palm."""
     performer(s, yaw_deg=85)
     script = moved_about("mug", "left", (("push", 1.2, Move((0.0, -0.1, 0.0))),))
-    f = at_table(s, "child", script, "mug", shapes.vessel(0.033, 0.09), 0.22, 0.12)
+    f = performing_at_table(s, "child", script, "mug", shapes.vessel(0.033, 0.09), 0.22, 0.12)
     told(f, "left", "mug", (("Push", ("mug", "table")),))
 
 
@@ -723,9 +723,7 @@ def carry_a_board_together(s: PeopleStage) -> None:
     for hand in hands[1:]:
         hand.join(board)
     leader.take(board)
-    leader.move((0.0, 0.0, 0.12), 0.9)
-    leader.step("Lift", board)
-    leader.hold(0.6, board)
+    travel(leader, "Lift", (0.0, 0.0, 0.12), 0.9, board, hold=0.6)
     far, begin = 0.6, leader.clock
     for p, way in ((anna, far), (ben, -far)):
         p.clock = begin

@@ -8,11 +8,11 @@ import numpy as np
 from scenes.hands import shapes
 from scenes.hands.expectation import Step
 from scenes.hands.paths import NEAR, UP, Poses, Times, about, pose, quintic
-from scenes.hands.performer import PRESS
+from scenes.hands.performer import PRESS, travel
 from scenes.hands.scene import performer
 from scenes.hands.things import Thing
 from scenes.household.builders import gate
-from scenes.objects.builders import Grip, Hinge, cabinet, cupboard, seize, travel
+from scenes.objects.builders import Grip, Hinge, cabinet, cupboard, seize
 from scenes.people.body import Person, foot_place
 from scenes.people.handling import hold_between, mug, set_down, take_up, together
 from scenes.people.limbs import SOLE_M, Limb
@@ -60,12 +60,9 @@ def walk_to_a_table_and_take_a_mug(s: PeopleStage) -> None:
     p.walk(1.65, speed=0.9)
     right = p.right
     right.rest(0.7)
-    right.reach(mug, "-y", 0.9, up=0.6)
-    right.hold(0.4, mug)
+    right.reach(mug, "-y", 0.9, up=0.6, hold=0.4)
     right.take(mug)
-    right.move((0.0, 0.0, 0.22), 0.9)
-    right.step("Lift", mug)
-    right.hold(0.8, mug)
+    travel(right, "Lift", (0.0, 0.0, 0.22), 0.9, mug, hold=0.8)
     p.until(right)
     p.finish(p.clock)
 
@@ -604,9 +601,7 @@ def put_a_bottle_on_the_floor(s: PeopleStage) -> None:
     left.hold(0.8, bottle)
     p.stand(0.8)
     down_and_up(p, "left")
-    left.move((0.0, 0.0, -0.8), 1.4)
-    left.step("Lower", bottle, s.floor)
-    left.hold(0.6, bottle, s.floor)
+    travel(left, "Lower", (0.0, 0.0, -0.8), 1.4, bottle, s.floor, hold=0.6)
     p.until(left)
     p.stand(0.35)
     rise(p, "left", 2.2)
@@ -700,17 +695,14 @@ def drink_while_seated(s: PeopleStage) -> None:
         hand.body.first[:3, 3] += (0.0, 0.0, 0.25)
         hand.home = hand.body.first
     right.rest(0.6)
-    right.reach(cup, "-y", 0.9, up=0.6, along=-0.025)
-    right.hold(0.4, cup)
+    right.reach(cup, "-y", 0.9, up=0.6, along=-0.025, hold=0.4)
     right.take(cup)
     face = p.head.body.at(0.0)[:3, 3] + (0.1 * p.size, 0.0, 0.0)
     goal = np.add(face, (0.042 - PRESS, 0.0, -0.1))
-    right.move(goal - start, 1.2, arrive=0.12)
-    right.step("MoveObjTo", cup, p.head)
+    travel(right, "MoveObjTo", goal - start, 1.2, cup, p.head, arrive=0.12)
     right.dip(face, (0.0, 1.0, 0.0), -42.0, 1.3)
     right.step("Drink", cup, p.head)
-    right.move(start - goal, 1.2, depart=0.12)
-    right.step("MoveObjTo", cup, table)
+    travel(right, "MoveObjTo", start - goal, 1.2, cup, table, depart=0.12)
     right.hold(0.5, cup, table)
     right.leave(0.9)
     right.rest(0.6)
@@ -755,8 +747,7 @@ def open_a_drawer_by_a_step_back(s: PeopleStage) -> None:
     right.rest(0.6)
     seize(right, chest.drawer, chest.grip, 0.9, hold=0.5)
     begin = right.clock
-    travel(right, "Open", (-0.2, 0.0, 0.0), 1.0, chest.drawer, chest.body)
-    right.hold(0.6, chest.drawer, chest.body)
+    travel(right, "Open", (-0.2, 0.0, 0.0), 1.0, chest.drawer, chest.body, hold=0.6)
     back = p.trunk.at(0.0) @ pose((-0.3, 0.0, 0.0))
     p.stride("right", back, begin + 0.1, begin + 0.75)
     p.clock = begin
