@@ -17,16 +17,11 @@ from capar.model.errors import CaptureError, UnknownNameError
 from capar.model.json_form import from_json, published_schema, to_json
 from capar.model.observation import Observation
 from capar.model.par import Step
-from capar.pipelines.explanation import explained
 from capar.pipelines.observation import observe
-from capar.views.picture import draw
 from capar.views.script import script
-from capar_rules.engine.profiles import profile
 from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary
 from kb.checks import check
-from kb.language.describe import describe
-from kb.reports.complex_actions import as_text
 
 BUNDLE = """\
 name = "handing_over"
@@ -138,16 +133,6 @@ def test_the_observation_comes_back_from_json(seen: Observation) -> None:
     assert from_json(text) == seen
 
 
-def test_the_reason_says_that_it_was_another_agent(folder: Path) -> None:
-    both = explained(read_capture(folder), rules=profile())
-    for name, reason in (
-        ("HandOver", "another agent had taken it"),
-        ("Accept", "another agent had it"),
-    ):
-        (segment,) = [each for each in both.observation.segments if each.name == name]
-        assert reason in both.explainer.explain(segment).summary
-
-
 def test_the_actionary_knows_who_did_what(seen: Observation) -> None:
     with Actionary.in_memory() as store:
         store.add(seen)
@@ -176,39 +161,6 @@ def test_a_place_is_kept_with_the_agent_and_the_segment_that_made_it(seen: Obser
         rows = [tuple(row.values()) for row in store.query(query).plain()]
     expected = [(seen.performer(e.ee), e.ee, e.action, e.frame) for e in seen.locations]
     assert sorted(rows) == sorted(expected)
-
-
-def test_the_table_says_whose_hand_it_is(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(sys, "argv", ["capar", "observe", str(folder), "--pars"])
-    with pytest.raises(SystemExit):
-        main()
-    printed = capsys.readouterr().out
-    assert "guest_hand/0 (tall_man)" in printed
-    assert "IPAR HandOver(woman, mug)" in printed
-    assert "IPAR Accept(tall_man, mug)" in printed
-
-
-def test_what_each_did_is_told_of_each(seen: Observation) -> None:
-    told = describe(seen)
-    assert told.startswith("The woman reached for the mug")
-    assert "lifted it off the table" in told
-    hers, his = told.split(" The tall man ")
-    assert hers.endswith("and handed it to the tall man.")
-    assert his.startswith("accepted")
-
-
-def test_who_takes_it_is_someone_where_no_hand_of_another_is_seen_to_have_it(
-    seen: Observation,
-) -> None:
-    own = tuple(each for each in seen.links if each.ee != TAKING)
-    assert "handed it to someone." in describe(replace(seen, links=own))
-
-
-def test_who_takes_it_is_said_by_a_name_of_their_own(seen: Observation) -> None:
-    text = to_json(seen).replace('"tall_man"', '"bob"').replace(",tall_man)", ",bob)")
-    assert "handed it to Bob. Bob accepted" in describe(from_json(text))
 
 
 def test_each_step_of_a_script_is_of_the_agent_whose_end_effector_takes_it(
@@ -245,20 +197,6 @@ def test_the_command_writes_the_script_and_hatches_what_was_lost(
         main()
     assert "'agents': agent2" in capsys.readouterr().out
     assert "fill: url(#h" in picture.read_text(encoding="utf-8")
-
-
-def test_who_was_seen_to_do_it_are_all_that_act(seen: Observation) -> None:
-    with Actionary.in_memory() as store:
-        store.add(seen)
-        assert "handing_over by woman and tall_man, 5.595 s" in as_text(store, seen.capture)
-
-
-def test_the_picture_names_everyone_who_acts(seen: Observation, tmp_path: Path) -> None:
-    draw(seen, {}, path=tmp_path / "handing.svg")
-    assert "woman and tall man · 5.60 s" in (tmp_path / "handing.svg").read_text("utf-8")
-    hers = replace(seen, links=tuple(each for each in seen.links if each.ee == GIVING))
-    draw(hers, {}, path=tmp_path / "giving.svg")
-    assert "<!-- woman · 5.60 s" in (tmp_path / "giving.svg").read_text("utf-8")
 
 
 def test_an_agent_who_is_not_there_is_a_mistake_with_its_line(tmp_path: Path) -> None:

@@ -1,15 +1,10 @@
 """Scenes keep their names at other rates, with other noise and in other draws (spec 10)."""
 
-import json
-from dataclasses import asdict
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from scenes.batteries import BATTERIES
 from scenes.hands import SCENES
-from scenes.rates import ALL, USUAL, Cell, main, stays, table
+from scenes.rates import stays
 from scenes.score import Outcome, observed
 
 RATES_HZ = (30.0, 100.0, 240.0)
@@ -41,44 +36,9 @@ def outcome(end_s: float, *, named: bool = True) -> Outcome:
     )
 
 
-def kept(folder: Path, cell: Cell, battery: str, *found: Outcome) -> None:
-    """Keep outcomes as the tool does."""
-    rows = [asdict(each) for each in found]
-    (folder / f"{cell.name}_{battery}.json").write_text(json.dumps(rows))
-
-
-def test_noiseless_scenes_are_recorded_once_at_each_rate() -> None:
-    assert len(ALL) == len(set(ALL)) == 21
-    assert sum(cell.noise_mm == 0.0 for cell in ALL) == 3
-
-
 def test_a_border_stays_within_50_ms_and_other_steps_do_not_count() -> None:
     assert stays(outcome(1.04), outcome(1.0)) is True
     assert stays(outcome(1.05), outcome(1.0)) is True
     assert stays(outcome(1.06), outcome(1.0)) is False
     other = Outcome("a", "hand", (), ("Touch(cup) 0.00-1.00",), False, False, None)
     assert stays(other, outcome(1.0)) is None
-
-
-def test_the_batteries_of_a_cell_are_pooled_only_when_all_are_there(tmp_path: Path) -> None:
-    first, *others = BATTERIES
-    kept(tmp_path, USUAL, first, outcome(1.0), outcome(1.0, named=False))
-    assert "**all**" not in table(tmp_path)
-    for battery in others:
-        kept(tmp_path, USUAL, battery, outcome(1.0))
-    right, all_of_them = len(BATTERIES), len(BATTERIES) + 1
-    pooled = f"{right} of {all_of_them} ({100.0 * right / all_of_them:.1f} %)"
-    assert f"**all**, worst {first} | {pooled} | {pooled}" in table(tmp_path)
-
-
-def test_remarks_below_a_table_outlast_a_new_table(tmp_path: Path) -> None:
-    cells = tmp_path / "cells"
-    cells.mkdir()
-    kept(cells, USUAL, "hands", outcome(1.0))
-    path = tmp_path / "rates.md"
-    path.write_text("# Old\n\n| old |\n\n## What moved\n\nNothing.\n")
-    main([str(cells), "--cell", "100:0.5:0", "--battery", "hands", "--table", str(path)])
-    text = path.read_text()
-    assert text.endswith("\n## What moved\n\nNothing.\n")
-    assert "| old |" not in text
-    assert "1 of 1" in text
