@@ -8,7 +8,6 @@ import zipfile
 import zlib
 from collections.abc import Sequence
 from pathlib import Path
-from typing import BinaryIO, cast
 
 import numpy as np
 from jaxtyping import Float
@@ -81,11 +80,8 @@ def source_of(path: Path, form: str, *, recorded_at: str = "") -> Source:
         form: The name of its format.
         recorded_at: When it says that it was recorded (ISO 8601); empty if it does not.
     """
-    digest = hashlib.sha256()
     with path.open("rb") as file:
-        while block := file.read(1 << 20):
-            digest.update(block)
-    return Source(str(path), form, digest.hexdigest(), recorded_at)
+        return Source(str(path), form, hashlib.file_digest(file, "sha256").hexdigest(), recorded_at)
 
 
 def check_zip(path: Path, limit: int = EXPANDED_LIMIT) -> list[str]:
@@ -111,23 +107,17 @@ def check_zip(path: Path, limit: int = EXPANDED_LIMIT) -> list[str]:
 
 def _read(path: Path, limit: int, *, whole: bool) -> bytes:
     try:
-        with path.open("rb") as raw, _expanding(raw) as file:
-            return file.read(limit)
+        with path.open("rb") as raw:
+            magic = raw.peek(6)[:6]
+            if magic.startswith(b"\x1f\x8b"):
+                return gzip.GzipFile(fileobj=raw).read(limit)
+            return (lzma.LZMAFile(raw) if magic.startswith(b"\xfd7zXZ\x00") else raw).read(limit)
     except PermissionError as error:
         what = f"cannot be read: {error.strerror}."
         raise FileError(path, what, "Grant yourself read permission.") from error
     except _DAMAGE as error:
         hint = "Copy it again." if whole else "It seems compressed, and damaged."
         raise FileError(path, f"cannot be read to its end: {error}.", hint) from error
-
-
-def _expanding(raw: io.BufferedReader) -> BinaryIO:
-    magic = raw.peek(6)[:6]
-    if magic.startswith(b"\x1f\x8b"):
-        return cast(BinaryIO, gzip.GzipFile(fileobj=raw))
-    if magic.startswith(b"\xfd7zXZ\x00"):
-        return cast(BinaryIO, lzma.LZMAFile(raw))
-    return cast(BinaryIO, raw)
 
 
 _MISSING = {"", "nan", "na", "null", "none"}
@@ -159,27 +149,33 @@ def read_rows(
         table = np.empty((0, 0))
     if table.shape == (len(rows), columns):
         return table
-    numbered = [(n, each) for n, each in enumerate(lines, first_line) if each.strip()]
-    return np.array([_row(path, n, each, columns, delimiter) for n, each in numbered])
+    out = []
+    for number, line in enumerate(lines, first_line):
+        cells = line.rstrip("\r\n").split(delimiter)
+        while len(cells) > columns and not cells[-1].strip():
+            cells.pop()
+        if line.strip() and len(cells) != columns:
+            raise FileError(
+                f"{path}:{number}",
+                f"{len(cells)} cells where the header names {columns}.",
+                "The file is cut short or damaged; export it again.",
+            )
+        values = [np.nan if c.strip().lower() in _MISSING else number_of(c) for c in cells]
+        if line.strip() and None in values:
+            cell = cells[values.index(None)].strip()
+            raise FileError(f"{path}:{number}", f"{cell[:40]!r} is no number.")
+        out += [values] if line.strip() else []
+    return np.array(out, dtype=float)
 
 
-def _row(path: Path, line: int, text: str, columns: int, delimiter: str | None) -> list[float]:
-    cells = text.rstrip("\r\n").split(delimiter)
-    while len(cells) > columns and not cells[-1].strip():
-        cells.pop()
-    if len(cells) != columns:
-        raise FileError(
-            f"{path}:{line}",
-            f"{len(cells)} cells where the header names {columns}.",
-            "The file is cut short or damaged; export it again.",
-        )
-    return [_number(path, line, cell.strip()) for cell in cells]
-
-
-def _number(path: Path, line: int, cell: str) -> float:
-    if cell.lower() in _MISSING:
-        return np.nan
+def number_of(text: str) -> float | None:
+    """The number that a text is; None if it is none."""
     try:
-        return float(cell)
+        return float(text)
     except ValueError:
-        raise FileError(f"{path}:{line}", f"{cell[:40]!r} is no number.") from None
+        return None
+
+
+def opens_with(head: bytes, word: bytes) -> bool:
+    """Whether a text file opens with a word, in whatever case."""
+    return head.removeprefix(b"\xef\xbb\xbf").lstrip()[: len(word)].upper() == word

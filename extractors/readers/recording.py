@@ -2,14 +2,17 @@
 
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, date, datetime, timedelta
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
+from scipy.spatial.transform import Rotation
 
+from capar.model import geometry
 from capar.model.capture import UNITS as UNITS
 from capar.model.capture import Notice, Source, Stream
 from capar.model.errors import CaptureError
@@ -53,7 +56,8 @@ class Recording:
             if np.isinf(points).any():
                 raise CaptureError(f"marker {name!r} is at infinity; missing points are NaN")
         if self.markers:
-            check_clock(self.marker_times)
+            still = np.zeros((frames, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1))
+            Stream(self.marker_times, *still)  # checks the clock
         if not self.markers and not self.bodies:
             raise CaptureError("neither a body nor a marker in it")
         object.__setattr__(self, "bodies", MappingProxyType(dict(self.bodies)))
@@ -79,17 +83,6 @@ class Recording:
         return sorted({*self.bodies, *self.markers})
 
 
-def check_clock(times: Float[np.ndarray, "frames"]) -> None:
-    """Check that time stamps are numbers that increase.
-
-    Raises:
-        CaptureError: They are not; the message names the frame.
-    """
-    frames = len(times)
-    identity = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1))
-    Stream(times=times, positions=np.zeros((frames, 3)), orientations=identity)
-
-
 def track(
     name: str,
     times: Float[np.ndarray, "frames"],
@@ -105,6 +98,38 @@ def track(
         return Stream(times=times, positions=positions, orientations=orientations)
     except CaptureError as error:
         raise CaptureError(f"body {name!r}: {error}") from error
+
+
+def track_of_matrices(
+    name: str,
+    times: Float[np.ndarray, "frames"],
+    positions: Float[np.ndarray, "frames 3"],
+    matrices: Float[np.ndarray, "frames 3 3"],
+    lost: Bool[np.ndarray, "frames"],
+) -> Stream:
+    """A body's poses, validated; it is also lost where its matrix is zero.
+
+    Raises:
+        CaptureError: A matrix is a reflection, or no rotation at all.
+    """
+    seen = ~lost & ~(matrices == 0.0).all(axis=(1, 2))
+    found = matrices[seen]
+    skew = np.abs(found @ found.transpose(0, 2, 1) - np.eye(3)).max(axis=(1, 2), initial=0.0)
+    bad = np.flatnonzero(~(skew < 0.02))
+    if bad.size:
+        raise CaptureError(f"body {name!r}: no rotation matrix at frame {bad[0]}")
+    determinants = np.linalg.det(found)
+    mirrored = np.flatnonzero(determinants < 0.0)
+    if mirrored.size:
+        raise CaptureError(
+            f"body {name!r}: the matrix at frame {mirrored[0]} is a reflection (determinant "
+            f"{determinants[mirrored[0]]:.3f}), in {mirrored.size} of {len(found)} frames; "
+            "axes of the body and of the world are of different handedness"
+        )
+    orientations = np.full((len(times), 4), np.nan)
+    if seen.any():
+        orientations[seen] = geometry.quaternions(Rotation.from_matrix(found))
+    return track(name, times, np.where(seen[:, None], positions, np.nan), orientations)
 
 
 def uniform_clock(frames: int, rate_hz: float) -> Float[np.ndarray, "frames"]:
@@ -172,7 +197,6 @@ def check_rate(times: Float[np.ndarray, "frames"], options: Mapping[str, Any]) -
         )
 
 
-_FORMS = ("%Y-%m-%d, %H:%M:%S.%f", "%Y-%m-%d, %H:%M:%S")  # Those of Qualisys, beside ISO 8601.
 EARLIEST = datetime(1990, 1, 1, tzinfo=UTC)
 """Stamps since 1970 that are earlier count from when a computer or a simulation started."""
 
@@ -183,20 +207,10 @@ def iso_time(text: str) -> str:
     What the text leaves open, such as the time of day or the time zone, stays open.
     """
     stripped = text.strip()
-    if re.fullmatch(r"\d{4}-\d\d-\d\d", stripped):
-        try:
+    with suppress(ValueError):
+        if re.fullmatch(r"\d{4}-\d\d-\d\d", stripped):
             return date.fromisoformat(stripped).isoformat()
-        except ValueError:
-            return ""
-    try:
-        return _iso(datetime.fromisoformat(stripped))
-    except ValueError:
-        pass
-    for form in _FORMS:
-        try:
-            return _iso(datetime.strptime(stripped, form))
-        except ValueError:
-            continue
+        return _iso(datetime.fromisoformat(stripped.replace(", ", " ")))  # Qualisys has a comma
     return ""
 
 

@@ -9,9 +9,9 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
-from capar.model.capture import Notice, notice
+from capar.model.capture import notice
 from capar.model.errors import FileError
-from extractors.readers.files import read_rows, read_text, source_of
+from extractors.readers.files import number_of, opens_with, read_rows, read_text, source_of
 from extractors.readers.recording import Recording, track, uniform_clock
 
 CHANNELS = tuple(f"{axis}{kind}" for kind in ("position", "rotation") for axis in "XYZ")
@@ -31,7 +31,7 @@ class Joint:
 
 def recognises(path: Path, head: bytes) -> bool:
     """Whether the file opens with a hierarchy."""
-    return head.removeprefix(b"\xef\xbb\xbf").lstrip()[:9].upper() == b"HIERARCHY"
+    return opens_with(head, b"HIERARCHY")
 
 
 def read(path: Path, options: Any) -> Recording:
@@ -41,92 +41,72 @@ def read(path: Path, options: Any) -> Recording:
         FileError: The hierarchy is broken, or frames are missing.
     """
     lines = read_text(path).splitlines()
-    joints, motion_at = read_hierarchy(path, lines)
+    joints, motion_at = _hierarchy(path, lines)
     values, frame_time = _motion(path, lines, motion_at, sum(len(each.channels) for each in joints))
     times = uniform_clock(len(values), 1.0 / frame_time)
-    bodies = {
-        joint.name: track(joint.name, times, positions, geometry.quaternions(turned))
-        for joint, (positions, turned) in zip(joints, forward(joints, values), strict=True)
-    }
+    doubtful = [
+        each.name
+        for each in joints
+        if any(each.offset) and any(name.endswith("position") for name in each.channels)
+    ]
     return Recording(
         source=source_of(path, "bvh"),
-        bodies=bodies,
+        bodies={
+            joint.name: track(joint.name, times, positions, geometry.quaternions(turned))
+            for joint, (positions, turned) in zip(joints, forward(joints, values), strict=True)
+        },
         parents={each.name: joints[each.parent].name for each in joints if each.parent >= 0},
-        notices=tuple(_doubtful(joints)),
+        notices=(notice("offset-and-position", *doubtful),) if doubtful else (),
     )
 
 
-def read_hierarchy(path: Path, lines: list[str]) -> tuple[list[Joint], int]:
+def _hierarchy(path: Path, lines: list[str]) -> tuple[list[Joint], int]:
     """The joints, parents first, and the index of the line ``MOTION``."""
     joints: list[Joint] = []
-    open_joints: list[int] = []
-    waiting: int | None = None
-    for index, line in enumerate(lines):
-        words = line.split()
+    inside: list[int] = []
+    waiting: int | None = None  # the joint that the next brace opens; -1 for an end
+    for number, line in enumerate(lines, 1):
+        where, words = f"{path}:{number}", line.split()
         word = words[0].upper() if words else ""
-        if word == "MOTION":
-            if open_joints or not joints:
-                raise FileError(f"{path}:{index + 1}", "MOTION before the hierarchy is closed.")
-            return joints, index
+        if word == "MOTION" and joints and not inside:
+            return joints, number - 1
         if word in {"ROOT", "JOINT"}:
-            joints.append(_joint(path, index, words, joints, open_joints))
+            name = " ".join(words[1:])
+            if not name or any(each.name == name for each in joints):
+                raise FileError(where, f"a joint needs a name of its own, not {name!r}.")
+            joints.append(Joint(name, inside[-1] if inside else -1))
             waiting = len(joints) - 1
         elif word == "END":
             waiting = -1
-        elif word == "{":
-            open_joints.append(_opened(path, index, waiting))
+        elif word == "{" and waiting is not None:
+            inside.append(waiting)
             waiting = None
-        elif word == "}":
-            _opened(path, index, open_joints.pop() if open_joints else None)
-        elif word in {"OFFSET", "CHANNELS"}:
-            _describe(path, index, words, joints, open_joints)
+        elif word == "}" and inside:
+            inside.pop()
+        elif word in {"OFFSET", "CHANNELS"} and inside:
+            if inside[-1] >= 0:
+                _describe(where, words, joints[inside[-1]])
         elif word not in {"", "HIERARCHY"}:
-            raise FileError(f"{path}:{index + 1}", f"{line.strip()[:40]!r} is no part of a BVH.")
+            raise FileError(where, f"{line.strip()[:40]!r} cannot stand here in a BVH.")
     raise FileError(path, "ends inside the hierarchy, before MOTION.", "Export it again.")
 
 
-def _joint(
-    path: Path, index: int, words: list[str], joints: list[Joint], open_joints: list[int]
-) -> Joint:
-    name = " ".join(words[1:])
-    if not name or any(each.name == name for each in joints):
-        raise FileError(f"{path}:{index + 1}", f"a joint needs a name of its own, not {name!r}.")
-    return Joint(name, open_joints[-1] if open_joints else -1)
-
-
-def _opened(path: Path, index: int, joint: int | None) -> int:
-    if joint is None:
-        raise FileError(f"{path}:{index + 1}", "a brace that belongs to no joint.")
-    return joint
-
-
-def _describe(
-    path: Path, index: int, words: list[str], joints: list[Joint], open_joints: list[int]
-) -> None:
-    where = f"{path}:{index + 1}"
-    if not open_joints:
-        raise FileError(where, f"{words[0]} outside a joint.")
-    if open_joints[-1] < 0:
-        return
-    joint = joints[open_joints[-1]]
+def _describe(where: str, words: list[str], joint: Joint) -> None:
+    """Take a joint's offset or channels."""
     if words[0].upper() == "OFFSET":
         joint.offset = tuple(_finite(where, each) for each in words[1:4])
         if len(joint.offset) != 3:
             raise FileError(where, "OFFSET takes three numbers.")
         return
     known = {each.lower(): each for each in CHANNELS}
-    names = tuple(known.get(each.lower(), "") for each in words[2:])
-    if not all(names) or len(words) < 2 or words[1] != str(len(names)):
+    joint.channels = tuple(known.get(each.lower(), "") for each in words[2:])
+    if not all(joint.channels) or words[1:2] != [str(len(joint.channels))]:
         raise FileError(where, f"CHANNELS takes a count and as many of {', '.join(CHANNELS)}.")
-    joint.channels = names
 
 
 def _finite(where: str, word: str) -> float:
-    try:
-        value = float(word)
-    except ValueError:
-        value = np.nan
-    if not np.isfinite(value):
+    value = number_of(word)
+    if value is None or not np.isfinite(value):
         raise FileError(where, f"{word[:40]!r} is no number.")
     return value
 
@@ -134,13 +114,14 @@ def _finite(where: str, word: str) -> float:
 def _motion(
     path: Path, lines: list[str], at: int, columns: int
 ) -> tuple[Float[np.ndarray, "frames columns"], float]:
+    """The channels' values, and the time of a frame [s]."""
     header: dict[str, float] = {}
     row = at + 1
     while row < len(lines) and len(header) < 2:
         key, _, value = lines[row].partition(":")
-        if key.strip():
-            header[" ".join(key.lower().split())] = _finite(f"{path}:{row + 1}", value.strip())
         row += 1
+        if key.strip():
+            header[" ".join(key.lower().split())] = _finite(f"{path}:{row}", value.strip())
     if set(header) != {"frames", "frame time"}:
         raise FileError(f"{path}:{at + 1}", "after MOTION come 'Frames:' and 'Frame Time:'.")
     frame_time = header["frame time"]
@@ -161,37 +142,18 @@ def forward(
 ) -> list[tuple[Float[np.ndarray, "frames 3"], Rotation]]:
     """World position and rotation of every joint; channels apply in the order they are named."""
     out: list[tuple[np.ndarray, Rotation]] = []
-    column = 0
+    columns = iter(values.T)
     for joint in joints:
-        own = values[:, column : column + len(joint.channels)]
-        column += len(joint.channels)
-        place, turn = _local(joint, own)
+        place = np.tile(np.asarray(joint.offset), (len(values), 1))
+        turn = Rotation.identity(len(values))
+        for channel, own in zip(joint.channels, columns, strict=False):
+            axis = "XYZ".index(channel[0])
+            if channel.endswith("position"):
+                place[:, axis] = own + (joint.offset[axis] if joint.parent < 0 else 0.0)
+            else:
+                turn *= Rotation.from_euler(channel[0].lower(), own[:, None], degrees=True)
         if joint.parent >= 0:
             at, turned = out[joint.parent]
             place, turn = at + turned.apply(place), turned * turn
         out.append((place, turn))
     return out
-
-
-def _local(
-    joint: Joint, values: Float[np.ndarray, "frames channels"]
-) -> tuple[Float[np.ndarray, "frames 3"], Rotation]:
-    place = np.tile(np.asarray(joint.offset), (len(values), 1))
-    turn = Rotation.identity(len(values))
-    for index, channel in enumerate(joint.channels):
-        axis = "XYZ".index(channel[0])
-        if channel.endswith("position"):
-            place[:, axis] = values[:, index] + (joint.offset[axis] if joint.parent < 0 else 0.0)
-        else:
-            turn = turn * Rotation.from_euler(channel[0].lower(), values[:, [index]], degrees=True)
-    return place, turn
-
-
-def _doubtful(joints: list[Joint]) -> list[Notice]:
-    """Joints whose offset and position channels could be read in two ways."""
-    moved = [
-        each.name
-        for each in joints
-        if any(each.offset) and any(name.endswith("position") for name in each.channels)
-    ]
-    return [notice("offset-and-position", *moved)] if moved else []

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.errors import FileError, UnknownNameError
-from extractors.readers.files import read_rows, read_text, source_of
+from extractors.readers.files import number_of, read_rows, read_text, source_of
 from extractors.readers.recording import Recording, check_rate, track, uniform_clock
 
 OPTIONS = frozenset({"time", "columns", "order", "rate_hz", "delimiter"})
@@ -23,21 +23,15 @@ ORDERS = {"xyzw": [3, 0, 1, 2], "wxyz": [0, 1, 2, 3]}
 
 def recognises(path: Path, head: bytes) -> bool:
     """Whether the first line names columns and the second, if there is one, holds numbers."""
-    try:
-        lines = [each for each in head.decode("utf-8-sig", "ignore").splitlines() if each.strip()]
-    except UnicodeDecodeError:
-        return False
+    lines = [each for each in head.decode("utf-8-sig", "ignore").splitlines() if each.strip()]
     if not lines or "\0" in lines[0]:
         return False
-    delimiter = _delimiter(lines[0])
-    names = _names(lines[0], delimiter)
+    delimiter, names = _header(lines[0])
     if len(lines) == 1:
         return len(names) > 2 and bool(_groups(names) or {*TIMES} & {n.lower() for n in names})
-    cells = lines[1].split(delimiter)
+    cells = [number_of(each) for each in lines[1].split(delimiter)]
     return (
-        len(cells) > 2
-        and any(map(_is_number, cells))
-        and not _is_number(lines[0].split(delimiter)[0])
+        len(cells) > 2 and any(each is not None for each in cells) and number_of(names[0]) is None
     )
 
 
@@ -50,8 +44,7 @@ def read(path: Path, options: Mapping[str, Any]) -> Recording:
     """
     lines = read_text(path).splitlines()
     start = next((n for n, each in enumerate(lines) if each.strip()), 0)
-    delimiter = str(options.get("delimiter", _delimiter(lines[start])))
-    names = _names(lines[start], delimiter)
+    delimiter, names = _header(lines[start], options.get("delimiter"))
     if len(set(names)) != len(names):
         raise FileError(path, "names a column twice.")
     if not any(each.strip() for each in lines[start + 1 :]):
@@ -69,7 +62,14 @@ def read(path: Path, options: Mapping[str, Any]) -> Recording:
         raise UnknownNameError("order of quaternions", order, ORDERS, where=str(path))
     bodies, markers = {}, {}
     for body, columns in groups.items():
-        values = _values(path, table, body, columns)
+        for column in columns:
+            if column not in table:
+                raise UnknownNameError("column", column, table, where=str(path))
+        if len(columns) not in {3, 7}:
+            raise FileError(path, f"{body!r} has {len(columns)} columns; a body has 7, a point 3.")
+        values = np.stack([table[each] for each in columns], axis=1)
+        if (valid := table.get(f"{body}_valid")) is not None:
+            values = np.where((valid > 0.5)[:, None], values, np.nan)
         if len(columns) == 7:
             bodies[body] = track(body, times, values[:, :3], values[:, 3:][:, ORDERS[order]])
         else:
@@ -89,33 +89,20 @@ def read(path: Path, options: Mapping[str, Any]) -> Recording:
     )
 
 
-def _values(
-    path: Path, table: Mapping[str, Float[np.ndarray, "frames"]], body: str, columns: list[str]
-) -> Float[np.ndarray, "frames columns"]:
-    """The numbers of a body or point; NaN where its column ``_valid`` says so."""
-    for column in columns:
-        if column not in table:
-            raise UnknownNameError("column", column, table, where=str(path))
-    if len(columns) not in {3, 7}:
-        raise FileError(path, f"{body!r} has {len(columns)} columns; a body has 7, a point 3.")
-    values = np.stack([table[each] for each in columns], axis=1)
-    valid = table.get(f"{body}_valid")
-    return values if valid is None else np.where((valid > 0.5)[:, None], values, np.nan)
+def _header(line: str, delimiter: str | None = None) -> tuple[str, list[str]]:
+    """What separates cells, and the names of the columns."""
+    delimiter = delimiter or max(",;\t", key=line.count)
+    return delimiter, [each.strip().strip('"') for each in line.split(delimiter)]
 
 
 def _groups(names: list[str]) -> dict[str, list[str]]:
     """Bodies and points that the columns' names tell, in their order."""
-    present = set(names)
     out: dict[str, list[str]] = {}
-    for name in names:
-        if not name.endswith("_x"):
-            continue
-        body = name[:-2]
+    for body in [name[:-2] for name in names if name.endswith("_x")]:
         columns = [f"{body}_{each}" for each in POSE]
-        if present.issuperset(columns):
+        columns = columns if {*columns} <= {*names} else columns[:3]
+        if {*columns} <= {*names}:
             out[body] = columns
-        elif present.issuperset(columns[:3]):
-            out[body] = columns[:3]
     return out
 
 
@@ -137,19 +124,3 @@ def _times(
         f"no column of time among {sorted(table)[:12]}.",
         'Name it in capture.toml (time = "column") or state rate_hz.',
     )
-
-
-def _names(line: str, delimiter: str) -> list[str]:
-    return [each.strip().strip('"') for each in line.split(delimiter)]
-
-
-def _delimiter(line: str) -> str:
-    return max(",;\t", key=line.count)
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True

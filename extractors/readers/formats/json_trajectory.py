@@ -12,8 +12,7 @@ import numpy as np
 from capar.model.capture import Stream
 from capar.model.errors import FileError
 from extractors.readers.files import EXPANDED_LIMIT, read_bytes, source_of
-from extractors.readers.formats.qualisys import rotation_quaternions
-from extractors.readers.recording import Recording, track
+from extractors.readers.recording import Recording, track_of_matrices
 
 OPTIONS = frozenset({"folder", "time_unit_s"})
 """``folder``: the folder inside an archive; ``time_unit_s``: seconds per time stamp (0.001)."""
@@ -80,4 +79,4 @@ def _body(path: Path, name: str, data: bytes, scale: float) -> Stream:
     frames = len(times)
     if matrices.shape != (frames, 3, 3) or places.shape != (frames, 3):
         raise FileError(path, f"trajectory {name!r}: rotations {matrices.shape}, {places.shape}.")
-    return track(name, times, places, rotation_quaternions(name, matrices))
+    return track_of_matrices(name, times, places, matrices, np.zeros(frames, bool))

@@ -22,9 +22,7 @@ seconds; ``fps``: the array that holds the rate; ``rate_hz``: the rate itself.""
 
 def recognises(path: Path, head: bytes) -> bool:
     """Whether the file is a zip archive of NumPy arrays."""
-    if not head.startswith(b"PK\x03\x04"):
-        return False
-    return b".npy" in head[:512]
+    return head.startswith(b"PK\x03\x04") and b".npy" in head[:512]
 
 
 def read(path: Path, options: Mapping[str, Any]) -> Recording:
@@ -34,7 +32,7 @@ def read(path: Path, options: Mapping[str, Any]) -> Recording:
         FileError: The archive is damaged or too large, or shapes disagree.
         UnknownNameError: The options name an array that is not there.
     """
-    arrays = load_arrays(path)
+    arrays = _load_arrays(path)
     if "arrays" not in options:
         shapes = ", ".join(f"{name} {each.shape}" for name, each in sorted(arrays.items()))
         raise FileError(
@@ -63,32 +61,25 @@ def read(path: Path, options: Mapping[str, Any]) -> Recording:
     )
 
 
-def load_arrays(path: Path) -> dict[str, np.ndarray]:
-    """Every array of an archive, none of them of Python objects.
-
-    Raises:
-        FileError: A header promises more than the archive holds, or asks for pickled objects.
-    """
+def _load_arrays(path: Path) -> dict[str, np.ndarray]:
+    """Every array of an archive whose header promises what is there, and no Python objects."""
     out = {}
     check_zip(path)
     with zipfile.ZipFile(path) as archive:
         for member in sorted(each for each in archive.namelist() if each.endswith(".npy")):
+            size = archive.getinfo(member).file_size
             with archive.open(member) as file:
-                _check_header(path, member, file, archive.getinfo(member).file_size)
+                first = npy.read_magic(file) == (1, 0)
+                read_header = npy.read_array_header_1_0 if first else npy.read_array_header_2_0
+                shape, _, dtype = read_header(file)
+            if dtype.hasobject:
+                raise FileError(path, f"{member} holds Python objects, which are never read.")
+            promised = math.prod(shape) * dtype.itemsize
+            if promised > min(size, EXPANDED_LIMIT):
+                raise FileError(path, f"{member} promises {promised} bytes and holds {size}.")
             with archive.open(member) as file:
                 out[member[:-4]] = np.asarray(npy.read_array(file, allow_pickle=False))
     return out
-
-
-def _check_header(path: Path, member: str, file: Any, size: int) -> None:
-    version = npy.read_magic(file)
-    read_header = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
-    shape, _, dtype = read_header(file)
-    if dtype.hasobject:
-        raise FileError(path, f"{member} holds Python objects, which are never read.")
-    promised = math.prod(shape) * dtype.itemsize
-    if promised > min(size, EXPANDED_LIMIT):
-        raise FileError(path, f"{member} promises {promised} bytes and holds {size}.")
 
 
 def _array(path: Path, arrays: Mapping[str, np.ndarray], name: object) -> np.ndarray:
@@ -101,11 +92,9 @@ def _group(
     path: Path, arrays: Mapping[str, np.ndarray], group: Mapping[str, Any]
 ) -> tuple[list[str], np.ndarray, np.ndarray | None]:
     positions = _stacked(path, _array(path, arrays, group.get("positions")), 3)
-    names = (
-        [str(group["body"])]
-        if "body" in group
-        else [str(each) for each in np.atleast_1d(_array(path, arrays, group.get("names")))]
-    )
+    names = [str(group.get("body"))]
+    if "body" not in group:
+        names = [str(each) for each in np.atleast_1d(_array(path, arrays, group.get("names")))]
     if len(names) != positions.shape[1]:
         raise FileError(path, f"{len(names)} names for {positions.shape[1]} bodies.")
     if "quaternions" not in group:

@@ -1,7 +1,7 @@
 """ROS 1 and ROS 2 bags: stamped poses, transforms and the rigid bodies of optical trackers."""
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -43,8 +43,7 @@ def read(path: Path, options: Any) -> Recording:
         if stamp not in samples[name] or pose is not _LOST:
             samples[name][stamp] = pose
     if not samples:
-        kinds = ", ".join(sorted(_KINDS))
-        raise FileError(path, f"no message of a kind that is read here: {kinds}.")
+        raise FileError(path, f"no message of a kind that is read here: {', '.join(_KINDS)}.")
     start = min(min(each) for each in samples.values())
     bodies = {}
     for name, poses in sorted(samples.items()):
@@ -73,42 +72,30 @@ def _samples(path: Path) -> Iterator[Sample]:
         wanted = [each for each in bag.connections if each.msgtype in _KINDS]
         for connection, _, data in bag.messages(connections=wanted):
             message = bag.deserialize(data, connection.msgtype)
-            yield from _KINDS[connection.msgtype](connection.topic, message)
+            for name, header, at, turn in _poses(connection.msgtype, connection.topic, message):
+                stamp = int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
+                pose = at and (at.x, at.y, at.z, turn.w, turn.x, turn.y, turn.z)
+                yield name, stamp, pose or _LOST
 
 
-def _stamp(header: Any) -> int:
-    return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
+def _poses(kind: str, topic: str, message: Any) -> Iterator[tuple[str, Any, Any, Any]]:
+    """Name, header, position and orientation of every body in a message; no pose where lost."""
+    if kind.endswith("PoseStamped"):
+        yield topic, message.header, message.pose.position, message.pose.orientation
+    elif kind.endswith("NatNetFrame"):
+        for body in message.rigid_bodies:
+            pose = body.pose if body.track_valid else None
+            yield body.name, message.header, pose and pose.position, pose and pose.orientation
+    else:
+        for each in getattr(message, "transforms", [message]):
+            part = each.transform
+            yield each.child_frame_id, each.header, part.translation, part.rotation
 
 
-def _pose(position: Any, turn: Any) -> tuple[float, ...]:
-    return (position.x, position.y, position.z, turn.w, turn.x, turn.y, turn.z)
-
-
-def _stamped_pose(topic: str, message: Any) -> Iterator[Sample]:
-    pose = message.pose
-    yield topic, _stamp(message.header), _pose(pose.position, pose.orientation)
-
-
-def _transforms(topic: str, message: Any) -> Iterator[Sample]:
-    for transform in message.transforms:
-        yield from _transform(topic, transform)
-
-
-def _transform(topic: str, message: Any) -> Iterator[Sample]:
-    part = message.transform
-    yield message.child_frame_id, _stamp(message.header), _pose(part.translation, part.rotation)
-
-
-def _rigid_bodies(topic: str, message: Any) -> Iterator[Sample]:
-    for body in message.rigid_bodies:
-        pose = _pose(body.pose.position, body.pose.orientation) if body.track_valid else _LOST
-        yield body.name, _stamp(message.header), pose
-
-
-_KINDS: dict[str, Callable[[str, Any], Iterator[Sample]]] = {
-    "geometry_msgs/msg/PoseStamped": _stamped_pose,
-    "geometry_msgs/msg/TransformStamped": _transform,
-    "natnet_bridge/msg/NatNetFrame": _rigid_bodies,
-    "tf2_msgs/msg/TFMessage": _transforms,
-    "tf/msg/tfMessage": _transforms,
-}
+_KINDS = (
+    "geometry_msgs/msg/PoseStamped",
+    "geometry_msgs/msg/TransformStamped",
+    "natnet_bridge/msg/NatNetFrame",
+    "tf/msg/tfMessage",
+    "tf2_msgs/msg/TFMessage",
+)
