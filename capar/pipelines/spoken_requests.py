@@ -20,7 +20,7 @@ from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.sources import Source
 from capar.regeneration.styles import Kind, own_style
 from kb.language import Instruction, Plan, Question, parse
-from kb.language.cursor import SentenceError
+from kb.language.reader import SentenceError
 from kb.language.vocabulary import Vocabulary
 
 CONTAINING = frozenset({"in", "into", "inside"})

@@ -16,7 +16,7 @@ SOURCES = ("off", "out of", "away from")
 """Prepositions of what a thing is taken from, as observations state them."""
 
 LIMBS = {
-    **{f"both_{many}": (f"left_{one}", f"right_{one}") for one, many in (("hand", "hands"),)},
+    "both_hands": ("left_hand", "right_hand"),
     "both_feet": ("left_foot", "right_foot"),
     "hand": ("left_hand", "right_hand"),
     "foot": ("left_foot", "right_foot"),
@@ -39,53 +39,12 @@ TIMES = {
 """What each relation demands of two segments."""
 
 
-def question_sparql(
-    about: Instruction, *, answers: str, variables: Iterable[str], order: str, counted: bool
-) -> str:
-    """The query of what fits an instruction.
-
-    Args:
-        about: What is asked about, with ``?`` for an object that is asked for.
-        answers: What is selected.
-        variables: The variables that must be bound beside those of every segment.
-        order: How rows are sorted or grouped.
-        counted: Whether it is asked how often.
-    """
-    lines = [*_segment(about, "", counted=counted), *_bound(about, set(variables))]
-    for index, condition in enumerate(about.circumstances.conditions, 1):
-        lines += _condition(condition, about, f"_{index}")
-    told = {"answers": answers, "segments": "\n".join(lines), "order": order}
-    query = _fragment("question")
-    for name, text in told.items():
-        query = query.replace(f"{{{{{name}}}}}", text)
-    return query
-
-
-def never_sparql(about: Instruction, asked: str) -> str:
-    """Which objects or performers nothing that fits an instruction is told of."""
-    lines = [
-        f"  ?seen a capar:Observation ; {_PATHS[asked]} ?{asked} .",
-        "  MINUS {",
-        *_segment(about, "", counted=False),
-        *_bound(about, {asked}),
-        "  }",
-    ]
-    told = {
-        "answers": f"?{asked} ?observation",
-        "segments": "\n".join(lines),
-        "order": f"ORDER BY ?observation ?{asked}",
-    }
-    query = _fragment("question")
-    for name, text in told.items():
-        query = query.replace(f"{{{{{name}}}}}", text)
-    return query
-
-
 _PATHS = {
     "object": "capar:object/capar:name",
     "performer": "capar:segment/capar:ofLink/capar:agent/capar:name",
     "ee": "capar:segment/capar:ee",
 }
+"""Where an observation has what is asked for where it is asked of what was not done."""
 
 
 def _fragment(name: str, suffix: str = "") -> str:
@@ -218,7 +177,7 @@ def _bound(about: Instruction, variables: set[str]) -> Iterator[str]:
         yield "  ?leaving capar:preposition ?taken ; capar:body ?left ; capar:other ?source ."
 
 
-def _condition(condition: Condition, about: Instruction, suffix: str) -> Iterator[str]:
+def _condition(condition: Condition, suffix: str) -> Iterator[str]:
     """Another segment of the same observation, and how the first stands to it."""
     times = TIMES[condition.relation].replace("@", suffix)
     lines = [*_segment(condition.about, suffix, counted=False), f"  FILTER({times})"]
@@ -309,24 +268,27 @@ class Question:
         return tuple(rows[ends.get(self.rank, slice(None))])
 
     def _query(self, about: Instruction) -> str:
-        never = _NEVER.get(self.ask)
-        if about.circumstances.negated and never is not None:
-            return never_sparql(about, never)
-        if self.ask is Ask.HOW_MANY and "?" not in about.call.objects:
-            about = replace(about, call=replace(about.call, objects=("?",)))
+        never = _NEVER.get(self.ask) if about.circumstances.negated else None
+        if self.ask is Ask.HOW_MANY and GAP not in about.call.objects:
+            about = replace(about, call=replace(about.call, objects=(GAP,)))
         beside = _BESIDE.get(self.ask, ())
-        count, group = _GROUPS.get(self.ask, ("", ""))
-        if count:
+        bound = {never} if never else set(beside)
+        lines = [*_segment(about, "", counted=self.ask is Ask.HOW_OFTEN), *_bound(about, bound)]
+        if never:
+            seen = f"  ?seen a capar:Observation ; {_PATHS[never]} ?{never} ."
+            lines = [seen, "  MINUS {", *lines, "  }"]
+            answers, order = f"?{never} ?observation", f"ORDER BY ?observation ?{never}"
+        elif self.ask in _GROUPS:
+            count, group = _GROUPS[self.ask]
             answers, order = f"{count} {group}", f"GROUP BY {group}\nORDER BY {group}"
         else:
-            first = beside or (self.ask.value,)
-            shown = (*first, *(each for each in _SHOWN if each not in first))
+            shown = dict.fromkeys((*(beside or (self.ask.value,)), *_SHOWN))
             answers = " ".join(f"?{each}" for each in shown)
             order = "ORDER BY ?observation ?start ?ee"
-        return question_sparql(
-            about,
-            answers=answers,
-            variables=beside,
-            order=order,
-            counted=self.ask is Ask.HOW_OFTEN,
-        )
+        for index, condition in enumerate(() if never else about.circumstances.conditions, 1):
+            lines += _condition(condition, f"_{index}")
+        query = _fragment("question")
+        parts = {"answers": answers, "segments": "\n".join(lines), "order": order}
+        for name, text in parts.items():
+            query = query.replace(f"{{{{{name}}}}}", text)
+        return query

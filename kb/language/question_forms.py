@@ -15,293 +15,219 @@ from kb.language.clauses import (
     subject,
 )
 from kb.language.instruction import GAP, Condition, Instruction
-from kb.language.noun_phrases import Adjuncts, Noun, Reader, adjunct, noun_phrase, window_at
+from kb.language.noun_phrases import Noun, noun_phrase
 from kb.language.question import Ask, Question
-from kb.language.verb_phrases import AFTER, VerbPhrase, begin, complete, matched
-from kb.language.vocabulary import is_next, of_class, prepositions
+from kb.language.reader import Adjuncts, Reader, attempt
+from kb.language.verb_phrases import AFTER, VerbPhrase, begin, complete, matched, require
+from kb.language.vocabulary import of_class
 from kb.lexicon.english import PEOPLE, Form
 
 DONE = frozenset({"do", "doing", "done"})
 HAPPEN = frozenset({"happened", "happens", "happen", "happening", "done", "going"})
+OBSERVATIONS = ("capture", "recording", "observation", "take")
 
 
-def _who(reader: Reader) -> Question | None:
-    cursor = reader.cursor
-    start = cursor.at
-    if is_next(cursor, "auxiliary") and cursor.peek() in {"did", "does"}:
-        before = cursor.at
-        cursor.take()
-        if subject(reader) is not None:
-            cursor.at = before
-            return Question(Ask.WHO, inverted(reader, GAP_PERSON))
-        cursor.at = start
+def _who(reader: Reader) -> Question:
+    start = reader.at
+    if reader.accept("did", "does") and subject(reader) is not None:
+        reader.at = start
+        return Question(Ask.WHO, inverted(reader, GAP_PERSON))
+    reader.at = start
     return Question(Ask.WHO, predicate(reader, GAP_PERSON))
 
 
-def _what(reader: Reader) -> Question | None:  # noqa: PLR0911 (each is one form of question)
-    cursor = reader.cursor
-    if cursor.peek() == "time":
-        cursor.take()
-        return _when(reader)
-    noun = _asked_noun(reader)
-    if noun is not None:
-        return noun
-    start = cursor.at
-    if not is_next(cursor, "auxiliary"):
-        if cursor.peek() in HAPPEN:
-            return _happened(reader)
+def _what(reader: Reader) -> Question:  # noqa: PLR0911 (each is one form of question)
+    if reader.accept("time"):
+        return Question(Ask.WHEN, inverted(reader))
+    if (asked := _which(reader)) is not None:
+        return asked
+    start = reader.at
+    before = helpers(reader) if reader.is_next("auxiliary") else None
+    if reader.peek() in HAPPEN:
+        reader.take()
+        reader.accept("on")
+        if reader.peek() in DONE:
+            begin(reader)
+        return Question(Ask.ACTION, _anything(reader, Noun()))
+    if before is None:
         return Question(Ask.WHAT, predicate(reader, GAP_THING))
-    before = helpers(reader)
-    if cursor.peek() in HAPPEN:
-        return _happened(reader)
-    ranked = _ranked(reader)
-    if ranked is not None:
+    if (ranked := _ranked(reader)) is not None:
         return ranked
-    about = subject(reader) if cursor.peek() not in DONE else None
-    if about is not None:
-        if cursor.peek() in DONE:
-            return _done_by(reader, about)
-        cursor.at = start
-        return Question(Ask.WHAT, inverted(reader, GAP_THING))
-    return Question(Ask.WHAT, predicate(reader, GAP_THING, before))
-
-
-def _happened(reader: Reader) -> Question:
-    """``what happened``, ``what was done to the mug``."""
-    cursor = reader.cursor
-    cursor.take()
-    cursor.accept("on")
-    if cursor.peek() in DONE:
-        begin(reader)
-    return Question(Ask.ACTION, _anything(reader, Noun()))
-
-
-def _done_by(reader: Reader, about: Noun) -> Question:
-    reader.cursor.take()
-    return Question(Ask.ACTION, _anything(reader, about))
+    about = subject(reader) if reader.peek() not in DONE else None
+    if about is None:
+        return Question(Ask.WHAT, predicate(reader, GAP_THING, before))
+    if reader.accept(*DONE):
+        return Question(Ask.ACTION, _anything(reader, about))
+    reader.at = start
+    return Question(Ask.WHAT, inverted(reader, GAP_THING))
 
 
 def _anything(reader: Reader, about: Noun) -> Instruction:
     """Any action of somebody, with what was said of it."""
-    phrase = complete(reader, VerbPhrase(("do",), reader.cursor.at))
-    objects = [each for each in phrase.objects if each.things != (GAP,)]
-    phrase.objects[:] = objects
+    phrase = complete(reader, VerbPhrase(("do",), reader.at))
+    phrase.objects = [each for each in phrase.objects if each.things != (GAP,)]
     return matched(reader, phrase, agent=about.person, ee=about.limb)
 
 
+@attempt
 def _ranked(reader: Reader) -> Question | None:
     """``the first thing that she picked up``."""
-    cursor = reader.cursor
-    start = cursor.at
-    cursor.accept("the")
-    rank = cursor.peek()
-    if rank in {"first", "last", "next", "only"} and is_next(cursor, "thing", 1):
-        cursor.at += 2
-        cursor.accept("that") or cursor.accept("which")
-        about = subject(reader)
-        if about is not None and cursor.peek() not in {"was", "were"}:
-            told = relative(reader, about)
-        else:
-            told = predicate(reader, GAP_THING)
-        return Question(Ask.WHAT, told, rank=rank)
-    cursor.at = start
-    return None
+    reader.accept("the")
+    rank = reader.take().lower()
+    if rank not in {"first", "last", "next", "only"} or reader.of("thing") is None:
+        return None
+    reader.accept("that", "which")
+    about = subject(reader)
+    if about is not None and reader.peek() not in {"was", "were"}:
+        return Question(Ask.WHAT, relative(reader, about), rank=rank)
+    return Question(Ask.WHAT, predicate(reader, GAP_THING), rank=rank)
 
 
-def _asked_noun(reader: Reader) -> Question | None:
-    """``which hand``, ``which objects``, ``which person``, ``what kind of box``."""
-    cursor = reader.cursor
-    start = cursor.at
-    cursor.longest({("of", "the"): "", ("of", "the", "two"): ""})
-    if cursor.longest({("end-effector",): "", **of_class("limb")}) is not None:
+@attempt
+def _which(reader: Reader) -> Question | None:
+    """``which hand``, ``which objects``, ``which person``, ``which box``."""
+    reader.accept("of the two", "of the")
+    if reader.accept("end-effector") or reader.of("limb") is not None:
         return _which_hand(reader)
-    if cursor.peek() in {"capture", "recording", "observation", "take"}:
-        cursor.take()
+    if reader.accept(*OBSERVATIONS):
         return Question(Ask.WHERE_SEEN, inverted(reader))
-    if cursor.peek() in PEOPLE or cursor.peek() in {"people", "one"}:
-        cursor.take()
+    if reader.accept(*PEOPLE, "people", "one"):
         return _who(reader)
-    if cursor.longest(of_class("thing")) is not None:
-        return _of_things(reader, ())
+    if reader.of("thing") is not None:
+        return Question(Ask.WHAT, _of_things(reader, ()))
     name: list[str] = []
-    while not reader.stops() and not reader.verb_forms() & {Form.PAST}:
-        name.append(cursor.take().text)
-    if name and (is_next(cursor, "auxiliary") or reader.finite_ahead()):
-        return _of_things(reader, ("_".join(name),))
-    cursor.at = start
+    while not reader.stops() and Form.PAST not in reader.verb_forms():
+        name.append(reader.take())
+    if name and (reader.is_next("auxiliary") or reader.finite_ahead()):
+        return Question(Ask.WHAT, _of_things(reader, ("_".join(name),)))
     return None
 
 
-def _of_things(reader: Reader, kinds: tuple[str, ...]) -> Question:
-    cursor = reader.cursor
-    if cursor.peek() in {"did", "does"}:
-        about = inverted(reader, GAP_THING)
-    else:
-        about = predicate(reader, GAP_THING)
+def _of_things(reader: Reader, kinds: tuple[str, ...]) -> Instruction:
+    asks = reader.peek() in {"did", "does"}
+    about = inverted(reader, GAP_THING) if asks else predicate(reader, GAP_THING)
     own = about.circumstances
-    told = replace(about, circumstances=replace(own, others=(*own.others, *kinds)))
-    return Question(Ask.WHAT, told)
+    return replace(about, circumstances=replace(own, others=(*own.others, *kinds)))
 
 
 def _which_hand(reader: Reader) -> Question:
     """``which hand moved the mug``, ``which hand did she use to cut the bread``."""
-    cursor = reader.cursor
     reader.limb = "any_hand"
-    if cursor.peek() not in {"did", "does"}:
+    start = reader.at
+    if not reader.accept("did", "does"):
         return Question(Ask.WHICH_HAND, predicate(reader, Noun(limb="any_hand")))
-    start = cursor.at
-    cursor.take()
     about = subject(reader)
-    if about is None or not cursor.accept("use"):
-        cursor.at = start
-        return Question(Ask.WHICH_HAND, _without_with(reader))
-    cursor.accept("to") or cursor.accept("for")
-    phrase = begin(reader)
-    if phrase is None:
-        raise cursor.error(f"no verb {cursor.peek()!r}", reader.verbs.beginnings)
-    complete(reader, phrase)
-    return Question(Ask.WHICH_HAND, matched(reader, phrase, agent=about.person))
-
-
-def _without_with(reader: Reader) -> Instruction:
-    told = inverted(reader)
-    reader.cursor.accept("with")
-    return told
-
-
-def _when(reader: Reader) -> Question:
-    return Question(Ask.WHEN, inverted(reader))
+    if about is not None and reader.accept("use"):
+        reader.accept("to", "for")
+        phrase = complete(reader, require(reader))
+        return Question(Ask.WHICH_HAND, matched(reader, phrase, agent=about.person))
+    reader.at = start
+    asked = inverted(reader)
+    reader.accept("with")
+    return Question(Ask.WHICH_HAND, asked)
 
 
 def _where(reader: Reader) -> Question:
-    told = inverted(reader)
-    source = reader.cursor.accept("from")
-    return Question(Ask.SOURCE if source else Ask.WHERE, told)
+    asked = inverted(reader)
+    return Question(Ask.SOURCE if reader.accept("from") else Ask.WHERE, asked)
 
 
 def _how_long(reader: Reader) -> Question:
     """``how long did she hold it``, ``how long did it take her to carry it``."""
-    cursor = reader.cursor
-    start = cursor.at
-    if cursor.accept("did", "it", "take") or cursor.accept("does", "it", "take"):
-        about = noun_phrase(reader) if is_next(cursor, "person") or cursor.peek() != "to" else None
-        if cursor.accept("to"):
-            phrase = begin(reader)
-            if phrase is not None:
-                complete(reader, phrase)
-                doer = about or Noun()
-                told = matched(reader, phrase, agent=doer.person, ee=doer.limb)
-                return Question(Ask.HOW_LONG, told)
-        cursor.at = start
+    start = reader.at
+    if reader.accept("did it take", "does it take"):
+        doer = noun_phrase(reader) if reader.peek() != "to" else None
+        if reader.accept("to"):
+            doer = doer or Noun()
+            phrase = complete(reader, require(reader))
+            return Question(Ask.HOW_LONG, matched(reader, phrase, agent=doer.person, ee=doer.limb))
+    reader.at = start
     return Question(Ask.HOW_LONG, inverted(reader))
 
 
-def _how_often(reader: Reader) -> Question:
-    return Question(Ask.HOW_OFTEN, inverted(reader))
-
-
 def _how_many(reader: Reader) -> Question:
-    cursor = reader.cursor
-    kinds: tuple[str, ...] = ()
-    if cursor.longest(of_class("thing")) is None:
-        if cursor.peek() in PEOPLE or cursor.peek() == "people":
-            cursor.take()
-            return Question(Ask.HOW_MANY_AGENTS, predicate(reader, GAP_PERSON))
-        if cursor.longest(of_class("limb")) is None:
-            kinds = (cursor.take().text,)
-    found = _of_things(reader, kinds)
-    return Question(Ask.HOW_MANY, found.about)
+    if reader.accept(*PEOPLE, "people"):
+        return Question(Ask.HOW_MANY_AGENTS, predicate(reader, GAP_PERSON))
+    known = reader.of("thing") is not None or reader.of("limb") is not None
+    return Question(Ask.HOW_MANY, _of_things(reader, () if known else (reader.take(),)))
 
 
 def _how(reader: Reader) -> Question:
-    cursor = reader.cursor
-    if not is_next(cursor, "auxiliary"):
+    if not reader.is_next("auxiliary"):
         known = ("often", "long", "many times", "many", "did")
-        raise cursor.error(f"no question is known with 'how {cursor.peek()}'", known)
+        raise reader.error(f"no question is known with 'how {reader.peek()}'", known)
     return Question(Ask.HOW, inverted(reader))
 
 
-FORMS: dict[tuple[str, ...], Callable[[Reader], Question | None]] = {
-    ("who",): _who,
-    ("whom",): _who,
-    ("what", "else"): _what,
-    ("what",): _what,
-    ("which",): _asked_noun,
-    ("where",): _where,
-    ("when",): _when,
-    ("how", "long"): _how_long,
-    ("how", "often"): _how_often,
-    ("how", "many", "times"): _how_often,
-    ("how", "many", "seconds"): _how_long,
-    ("how", "much", "time"): _how_long,
-    ("how", "many"): _how_many,
-    ("how",): _how,
+FORMS: dict[str, Callable[[Reader], Question | None]] = {
+    "who": _who,
+    "whom": _who,
+    "what else": _what,
+    "what": _what,
+    "which": _which,
+    "where": _where,
+    "when": lambda reader: Question(Ask.WHEN, inverted(reader)),
+    "how often": lambda reader: Question(Ask.HOW_OFTEN, inverted(reader)),
+    "how many times": lambda reader: Question(Ask.HOW_OFTEN, inverted(reader)),
+    "how long": _how_long,
+    "how many seconds": _how_long,
+    "how much time": _how_long,
+    "how many": _how_many,
+    "how": _how,
 }
-"""What each beginning of a question reads."""
+"""What each beginning of a question reads; longer ones stand first."""
 
 
+@attempt
 def question(reader: Reader) -> Question | None:
     """Read a question if the sentence is one.
 
     Raises:
         SentenceError: A word that cannot be read.
     """
-    cursor = reader.cursor
-    before = cursor.at
-    window, first = window_at(cursor), tuple[Condition, ...]()
-    if window is None and is_next(cursor, "relation") and _asks_later(reader):
+    window, first = reader.window(), tuple[Condition, ...]()
+    words = [each.lower() for each in reader.tokens]
+    asking = {each.split()[0] for each in FORMS} | {words[0] for words in of_class("auxiliary")}
+    later = any(one == "," and two in asking for one, two in pairwise(words))
+    if window is None and later and reader.is_next("relation"):
         first = conditions(reader)
     if window is not None or first:
-        cursor.accept(",")
+        reader.accept(",")
     found = _question(reader)
     if found is None:
-        cursor.at = before
         return None
     own = replace(found.about.circumstances, window=found.about.circumstances.window or window)
     return replace(found, about=replace(found.about, circumstances=own).under(*first))
 
 
-def _asks_later(reader: Reader) -> bool:
-    """Whether a question begins after a comma."""
-    words = [each.text.lower() for each in reader.cursor.tokens]
-    asking = {words[0] for words in (*FORMS, *of_class("auxiliary"))}
-    return any(one == "," and two in asking for one, two in pairwise(words))
-
-
 def _question(reader: Reader) -> Question | None:
-    cursor = reader.cursor
-    start = cursor.at
-    fronted = cursor.peek(1) in {"which", "what", "whom", "where", "how"}
-    if fronted and cursor.longest(prepositions()) is None:
-        cursor.at = start
+    start = reader.at
+    if reader.peek(1) in {"which", "what", "whom", "where", "how"}:
+        reader.of("preposition")
     for words, form in FORMS.items():
-        if cursor.accept(*words):
+        if reader.accept(words):
             found = form(reader)
             if found is not None:
                 return _finished(reader, found)
-            cursor.at = start
-    if is_next(cursor, "auxiliary") and not _command(reader):
-        return _finished(reader, Question(Ask.WHETHER, inverted(reader)))
-    return None
-
-
-def _command(reader: Reader) -> bool:
-    """Whether a helping verb begins an instruction: ``don't touch it``, ``could you``."""
-    cursor = reader.cursor
-    word = cursor.peek()
-    if is_next(cursor, "opening") or word in {"be", "have", "being", "having"}:
-        return True
-    return word in {"do", "don't"} and not is_next(cursor, "person", 1)
+            reader.at = start
+    word = reader.peek()
+    command = (
+        reader.is_next("opening")
+        or word in {"be", "have", "being", "having"}
+        or (word in {"do", "don't"} and not reader.is_next("person", ahead=1))
+    )
+    if command or not reader.is_next("auxiliary"):
+        return None
+    return _finished(reader, Question(Ask.WHETHER, inverted(reader)))
 
 
 def _finished(reader: Reader, value: Question) -> Question:
     """The question with what follows it: times, conditions, other possibilities."""
-    cursor = reader.cursor
-    while not cursor.done:
-        start = cursor.at
-        cursor.accept(",")
+    while not reader.done:
+        start = reader.at
+        reader.accept(",")
         found = Adjuncts()
-        if adjunct(cursor, found):
+        if reader.adjunct(found):
             own = value.about.circumstances
             own = replace(
                 own,
@@ -311,47 +237,37 @@ def _finished(reader: Reader, value: Question) -> Question:
             )
             value = replace(value, about=replace(value.about, circumstances=own))
             continue
-        cursor.at = start
-        more = conditions(reader)
-        if more:
+        reader.at = start
+        if more := conditions(reader):
             value = replace(value, about=value.about.under(*more))
-        elif cursor.accept("or"):
-            cursor.accept("not")
-            other = () if cursor.done else (_alternative(reader, value),)
+        elif reader.accept("or"):
+            reader.accept("not")
+            other = () if reader.done else (_alternative(reader, value.about),)
             value = replace(value, alternatives=(*value.alternatives, *other))
-        elif cursor.peek() in {"and", "but"} and (joined := _joined(reader)) is not None:
+        elif (joined := _joined(reader)) is not None:
             value = replace(value, also=(*value.also, joined))
         else:
-            problem = f"nothing is known that {cursor.peek()!r} could begin"
-            raise cursor.error(problem, AFTER)
+            raise reader.error(f"nothing is known that {reader.peek()!r} could begin", AFTER)
     ranks = {"first", "last"} & set(value.about.circumstances.manner)
     return replace(value, rank=value.rank or "".join(sorted(ranks)[:1]))
 
 
-def _alternative(reader: Reader, value: Question) -> Instruction:
-    if is_next(reader.cursor, "auxiliary"):
+def _alternative(reader: Reader, about: Instruction) -> Instruction:
+    if reader.is_next("auxiliary"):
         return inverted(reader)
     noun = noun_phrase(reader)
     if noun is None:
-        raise reader.cursor.error("no other possibility", ("did",))
-    about = value.about
+        raise reader.error("no other possibility", ("did",))
     if noun.limb:
         return replace(about, ee=noun.limb)
     if noun.is_person:
         return replace(about, agent=noun.person)
-    return replace(
-        about, call=replace(about.call, objects=(*about.call.objects[:-1], *noun.things))
-    )
+    objects = (*about.call.objects[:-1], *noun.things)
+    return replace(about, call=replace(about.call, objects=objects))
 
 
+@attempt
 def _joined(reader: Reader) -> Instruction | None:
     """What else is asked for at once: ``and put it down``."""
-    cursor = reader.cursor
-    start = cursor.at
-    cursor.take()
-    cursor.accept("then")
-    phrase = begin(reader)
-    if phrase is None:
-        cursor.at = start
-        return None
-    return matched(reader, complete(reader, phrase))
+    phrase = begin(reader) if reader.accept("and then", "but then", "and", "but") else None
+    return None if phrase is None else matched(reader, complete(reader, phrase))

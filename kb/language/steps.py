@@ -213,8 +213,8 @@ class Narrator:
             pair = thing, other = segment.objects[:2]
             words = {word for word, body, at in segment.prepositions if (body, at) == pair}
             after = self._next.get(key)
-            worked_at = after is not None and after.objects[:2] == pair
-            worked_at = worked_at and after.features.change_loc.startswith("1")
+            moves = after is not None and after.features.change_loc.startswith("1")
+            worked_at = moves and after is not None and after.objects[:2] == pair
             tag = self._tags.get(other)
             cases |= {
                 "tool": ("with", other, thing) in segment.prepositions,
