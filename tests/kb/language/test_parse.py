@@ -11,8 +11,8 @@ from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
 from kb.language import Instruction, Question, parse, sentence
-from kb.language.reader import SentenceError
 from kb.language.question import Ask
+from kb.language.reader import SentenceError
 from kb.language.vocabulary import EFFECTORS, EVERYTHING, PREPOSITIONS, Vocabulary
 from kb.lexicon.english import noun
 from kb.lexicon.links import PrimitiveWords
