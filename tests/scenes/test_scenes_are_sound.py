@@ -14,7 +14,7 @@ from scenes.hands.performer import Hand
 from scenes.hands.scene import Scene
 from scenes.hands.stage import Stage
 from scenes.hands.things import Thing
-from scenes.people.limbs import Limb, planted_m
+from scenes.people.stage import Limb, planted_m
 from scenes.score import judged
 
 NAMES = frozenset(

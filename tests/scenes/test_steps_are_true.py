@@ -7,12 +7,11 @@ import pytest
 
 from scenes.batteries import SOME
 from scenes.hands.clearance import Placed, gap
-from scenes.hands.expectation import Step
 from scenes.hands.performer import Hand
 from scenes.hands.scene import Scene
 from scenes.hands.stage import Stage
-from scenes.hands.things import Thing
-from scenes.people.limbs import planted_m
+from scenes.hands.things import Step, Thing
+from scenes.people.stage import planted_m
 
 STILL = frozenset(
     {"Rest", "Touch", "TouchWith", "TouchOneself", "Stand", "StandOnOneLeg", "RestFoot", "Point"}

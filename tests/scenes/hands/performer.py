@@ -6,7 +6,6 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation, Slerp
 
-from scenes.hands.expectation import Step
 from scenes.hands.paths import (
     Body,
     Piece,
@@ -20,7 +19,7 @@ from scenes.hands.paths import (
     quintic,
 )
 from scenes.hands.shapes import Form
-from scenes.hands.things import Thing
+from scenes.hands.things import Step, Thing
 
 PRESS = 0.001
 """How far a palm is pressed into what it touches [m]."""

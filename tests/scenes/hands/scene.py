@@ -8,9 +8,8 @@ from types import ModuleType
 from typing import Any
 
 from capar.model.capture import Capture
-from scenes.hands.expectation import Expectation
 from scenes.hands.stage import Noise, Stage
-from scenes.hands.things import Thing
+from scenes.hands.things import Expectation, Thing
 
 
 @dataclass(frozen=True)

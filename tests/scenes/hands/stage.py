@@ -9,10 +9,9 @@ from scipy.spatial.transform import Rotation
 
 from capar.model.capture import Agent, Capture, Role, Sensor, Shape, Stream, TagObject, TagType
 from scenes.hands import shapes
-from scenes.hands.expectation import Expectation, Step, Unit
 from scenes.hands.paths import Body, Poses, Times, Vector, pose
 from scenes.hands.performer import Hand
-from scenes.hands.things import Thing
+from scenes.hands.things import Expectation, Step, Thing, Unit
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,17 @@
-"""A person who stands, steps, walks, bends and sinks; hands go along or act on their own."""
+"""A person who stands, steps, walks, bends and sinks, and what people do with objects."""
 
 from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from scenes.hands.paths import Body, Poses, Times, Vector, about, min_jerk, pose
+from capar.model.capture import TagType
+from scenes.hands import shapes
+from scenes.hands.paths import Body, Poses, Times, Vector, about, facing, min_jerk, pose
+from scenes.hands.performer import Hand
+from scenes.hands.stage import Watcher
 from scenes.hands.things import Thing
-from scenes.people.limbs import SOLE_M, Chest, Limb, smooth
-from scenes.people.stage import PeopleStage
+from scenes.people.stage import SOLE_M, Chest, Limb, PeopleStage, Rider, foot_form, smooth
 
 TALL_M = 1.74
 """Stature of somebody of size 1 [m]."""
@@ -336,3 +339,120 @@ def foot_place(side: str, size: float) -> np.ndarray:
     """A foot's pose on the ground under a body that stands."""
     sign = -1.0 if side == "right" else 1.0
     return pose((0.02 * size, sign * STANCE_M * size, SOLE_M * size))
+
+
+def person(
+    stage: PeopleStage,
+    name: str = "",
+    *,
+    at: Vector = (0.0, 0.0),
+    facing_deg: float = 0.0,
+    size: float = 1.0,
+    hands: tuple[str, ...] = ("right", "left"),
+    feet: tuple[str, ...] = ("right", "left"),
+    form: shapes.Form | None = None,
+    hang: bool = False,
+    ground: Thing | None = None,
+) -> Person:
+    """Somebody who stands at a place; hands before the body at elbow height, or hanging down.
+
+    Args:
+        stage: Where.
+        name: Of the person; limbs are called after it if there are several.
+        at: Place on the floor [m].
+        facing_deg: Which way the body faces.
+        size: Relative to an adult of middle stature.
+        hands: The hands that are tracked.
+        feet: The feet that are tracked.
+        form: Of the hands, where they are not flat.
+        hang: Whether hands hang at the sides.
+        ground: What the feet stand on, if not the floor.
+    """
+    prefix = f"{name}_" if name else ""
+    agent = name or "agent"
+    stage.people[agent] = round(TALL_M * size, 3)
+    ground = ground or stage.floor
+    level = ground.site("+z", 1.0, 0.0)[0][2]
+    turn = Rotation.from_euler("z", facing_deg, degrees=True)
+    trunk = Body(f"{prefix}trunk", pose((*at, level), turn))
+    chest = Chest(f"{prefix}chest", trunk.first, trunk=trunk, hip_m=0.52 * TALL_M * size)
+    ball = shapes.ball(0.1 * size, "head")
+    place = pose((0.02 * size, 0.0, 0.93 * TALL_M * size))
+    head = Thing(Rider(f"{prefix}head", place, carrier=chest), ball, TagType.SELF)
+    back = Rider(f"{prefix}l5", pose((-0.1 * size, 0.0, 0.57 * TALL_M * size)), carrier=trunk)
+    stage.things.append(head)
+    stage.watchers.append(Watcher(head.body, "head", agent, ball))
+    stage.watchers.append(Watcher(back, "l5", agent))
+    made = Person(stage, agent, size, trunk, chest, head)
+    for side in hands:
+        made.local[side] = _at_home(side, size, hang=hang)
+        shape = (form or shapes.flat_hand(side)).scaled(size)
+        home = trunk.first @ made.local[side]
+        body = Body(f"{prefix}{side}_hand", home)
+        made.hands[side] = Limb(body, side, shape, home, member="hand", agent=agent)
+    for side in feet:
+        spot = trunk.first @ foot_place(side, size)
+        body = Body(f"{prefix}{side}_foot", spot)
+        made.feet[side] = Limb(body, side, foot_form(size), spot, member="foot", agent=agent)
+        made.feet[side].meet(ground)
+    stage.hands.extend([*made.hands.values(), *made.feet.values()])
+    return made
+
+
+def _at_home(side: str, size: float, *, hang: bool) -> np.ndarray:
+    sign = -1.0 if side == "right" else 1.0
+    inward = (0.0, -sign, 0.0)
+    if hang:
+        return pose((0.02, sign * 0.3 * size, 0.76 * size), facing(inward, (0.0, 0.0, -1.0)))
+    return pose((0.18 * size, sign * 0.27 * size, 1.0 * size), facing(inward, (1.0, 0.0, 0.0)))
+
+
+def mug(s: PeopleStage, at: Vector, name: str = "mug") -> Thing:
+    """A mug of usual size."""
+    return s.put(name, shapes.vessel(0.042, 0.1), at)
+
+
+def take_up(
+    hand: Hand, thing: Thing, side: str, *, lift: float, after: float = 0.6, reach_s: float = 0.9,
+    up: float = 0.6,
+) -> None:  # fmt: skip
+    """Reach, hold, lift and hold in the air."""
+    hand.reach(thing, side, reach_s, up=up)
+    hand.hold(0.4, thing)
+    hand.take(thing)
+    hand.move((0.0, 0.0, lift), 0.9)
+    hand.step("Lift", thing)
+    if after:
+        hand.hold(after, thing)
+
+
+def set_down(hand: Hand, thing: Thing, goal: Thing, down: float, *, hold: float = 0.5) -> None:
+    """Lower onto a goal, hold, and go home."""
+    hand.move((0.0, 0.0, -down), 0.9)
+    hand.step("Lower", thing, goal)
+    hand.hold(hold, thing, goal)
+    hand.leave(0.9)
+
+
+def hold_between(p: Person, thing: Thing, *, up: float = 0.5) -> None:
+    """Hold a thing between both palms from the first frame on."""
+    p.right.begin_at(thing, "-y", up=up, fingers=(1.0, 0.0, 0.0))
+    p.left.begin_at(thing, "+y", up=up, fingers=(1.0, 0.0, 0.0))
+    p.right.take(thing)
+    p.left.join(thing)
+
+
+def together(p: Person, thing: Thing, goal: Thing, *, down: float, hold: float) -> None:
+    """Lower what both hands hold onto a goal, hold it there, and take both hands away."""
+    right, left = p.right, p.left
+    left.until(right.clock)
+    since = len(right.steps)
+    left.release()
+    left.join(thing)
+    right.move((0.0, 0.0, -down), 1.0)
+    right.step("Lower", thing, goal)
+    right.hold(hold, thing, goal)
+    left.part(right, since)
+    for hand in (right, left):
+        hand.leave(0.9)
+        hand.idle(0.2)

@@ -19,13 +19,9 @@ from scenes.hands.paths import facing, pose
 from scenes.hands.performer import PRESS, travel
 from scenes.hands.scene import performer
 from scenes.hands.things import Thing
-from scenes.people.body import START_S, Person
-from scenes.people.handling import mug, set_down, take_up
-from scenes.people.hinges import Bend, Sway, both, moved
-from scenes.people.limbs import smooth
-from scenes.people.person import person
-from scenes.people.stage import PeopleStage
-from scenes.people.virtual import Figure, performing, stature
+from scenes.people.body import START_S, Person, mug, person, set_down, take_up
+from scenes.people.stage import PeopleStage, smooth
+from scenes.people.virtual import Bend, Figure, Sway, both, moved, performing, stature
 
 HOLD_S = 0.6
 """How long hands hold a thing before they let go [s]."""

@@ -6,18 +6,23 @@ from dataclasses import replace
 import numpy as np
 
 from scenes.hands import shapes
-from scenes.hands.expectation import Step
 from scenes.hands.paths import NEAR, UP, Poses, Times, about, pose, quintic
 from scenes.hands.performer import PRESS, travel
 from scenes.hands.scene import performer
-from scenes.hands.things import Thing
+from scenes.hands.things import Step, Thing
 from scenes.household.builders import gate
 from scenes.objects.builders import Grip, Hinge, cabinet, cupboard, seize
-from scenes.people.body import Person, foot_place
-from scenes.people.handling import hold_between, mug, set_down, take_up, together
-from scenes.people.limbs import SOLE_M, Limb
-from scenes.people.person import person
-from scenes.people.stage import PeopleStage
+from scenes.people.body import (
+    Person,
+    foot_place,
+    hold_between,
+    mug,
+    person,
+    set_down,
+    take_up,
+    together,
+)
+from scenes.people.stage import SOLE_M, Limb, PeopleStage
 
 
 def stroll(s: PeopleStage, p: Person, way: float, *, before: float, after: float, speed: float,
