@@ -16,12 +16,11 @@ from capar.body.sensors import PERFECT
 from capar.model.capture import Capture, TagType
 from capar.pipelines.language import vocabulary
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
-from capar.pipelines.recordings import Recording
+from capar.pipelines.recordings import Recording, observed_actions
 from capar.pipelines.spoken_requests import (
     Choice,
     Request,
     choices,
-    observed_actions,
     read_requests,
 )
 from capar.pipelines.trials import trial_of

@@ -1,32 +1,32 @@
 """Change the Actionary: agents, kinds of objects, corrections, forgotten observations."""
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
+from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
+from typer import Argument, Option
 
 from capar.cli.options import Json, Place, Wait, require_actionary, rule_words
-from capar.cli.output import check_writable, print_fields, print_json, print_names, written
-
-if TYPE_CHECKING:
-    from kb.corrections import Span
+from capar.cli.output import answer, check_writable, emit
+from capar.model.errors import UnknownNameError
 
 agents = typer.Typer(no_args_is_help=True, help="Who performs: declared, seen, and who is who.")
 objects = typer.Typer(no_args_is_help=True, help="What is known of objects, by their kinds.")
 
-Agent = Annotated[str, typer.Argument(help="An agent, as `capar agent list` prints it.")]
+Agent = Annotated[str, Argument(help="An agent, as `capar agent list` prints it.")]
 LABEL_COLUMNS = ("link", "start_s", "end_s", "label", "object")
 """Of a table of labels, as `capar evaluate` reads it."""
 
 
 @agents.command("new")
 def new_agent(
-    name: Annotated[str, typer.Argument(help="What the agent is called.")],
-    kind: Annotated[str, typer.Option(help="Its kind: man, woman, robot ...")] = "",
+    name: Annotated[str, Argument(help="What the agent is called.")],
+    kind: Annotated[str, Option(help="Its kind: man, woman, robot ...")] = "",
     can: Annotated[
-        list[str] | None, typer.Option(help="An action that it is able to do; may be repeated.")
+        list[str] | None, Option(help="An action that it is able to do; may be repeated.")
     ] = None,
     wait: Wait = 0.0,
     actionary: Place = None,
@@ -38,16 +38,13 @@ def new_agent(
     require_actionary(actionary, observed=True)
     with Actionary.open(actionary, wait_s=wait) as opened:
         opened.declare_agent(name, kind=kind, can=can or ())
-    if json:
-        print_json({"declared": name})
-    else:
-        typer.echo(f"declared {name}")
+    answer({"declared": name}, [f"declared {name}"], json=json)
 
 
 @agents.command("can")
 def agent_can(
     name: Agent,
-    actions: Annotated[list[str], typer.Argument(help="Actions that it is able to do.")],
+    actions: Annotated[list[str], Argument(help="Actions that it is able to do.")],
     wait: Wait = 0.0,
     actionary: Place = None,
     json: Json = False,
@@ -62,8 +59,8 @@ def list_agents(actionary: Place = None, json: Json = False) -> None:
     from kb import Actionary
 
     with Actionary.open(actionary, read_only=True) as opened:
-        found = opened.agents()
-    print_names(found, json=json)
+        found = list(opened.agents())
+    answer(found, found, json=json)
 
 
 @agents.command("show")
@@ -72,13 +69,13 @@ def show_agent(name: Agent, actionary: Place = None, json: Json = False) -> None
     from kb import Actionary
 
     with Actionary.open(actionary, read_only=True) as opened:
-        print_fields(name, opened.agent_profile(name), json=json)
+        _print_fields(name, opened.agent_profile(name), json=json)
 
 
 @agents.command("same")
 def same_agent(
     name: Agent,
-    other: Annotated[str, typer.Argument(help="The agent that is the same one.")],
+    other: Annotated[str, Argument(help="The agent that is the same one.")],
     wait: Wait = 0.0,
     actionary: Place = None,
     json: Json = False,
@@ -89,10 +86,7 @@ def same_agent(
     require_actionary(actionary, observed=True)
     with Actionary.open(actionary, wait_s=wait) as opened:
         opened.same_agent(name, other)
-    if json:
-        print_json({"agent": name, "joined": other})
-    else:
-        typer.echo(f"{other} is {name}")
+    answer({"agent": name, "joined": other}, [f"{other} is {name}"], json=json)
 
 
 @objects.command("list")
@@ -101,14 +95,14 @@ def list_objects(actionary: Place = None, json: Json = False) -> None:
     from kb import Actionary
 
     with Actionary.open(actionary, read_only=True) as opened:
-        found = opened.object_kinds()
-    print_names(found, json=json)
+        found = list(opened.object_kinds())
+    answer(found, found, json=json)
 
 
 @objects.command("can")
 def object_can(
-    kind: Annotated[str, typer.Argument(help="A kind of object, as `capar object list` has it.")],
-    actions: Annotated[list[str], typer.Argument(help="Actions that it can be used for.")],
+    kind: Annotated[str, Argument(help="A kind of object, as `capar object list` has it.")],
+    actions: Annotated[list[str], Argument(help="Actions that it can be used for.")],
     wait: Wait = 0.0,
     actionary: Place = None,
     json: Json = False,
@@ -119,7 +113,7 @@ def object_can(
 
 @objects.command("show")
 def show_object(
-    name: Annotated[str, typer.Argument(help="A kind of object, or the name of an object.")],
+    name: Annotated[str, Argument(help="A kind of object, or the name of an object.")],
     actionary: Place = None,
     json: Json = False,
 ) -> None:
@@ -127,7 +121,17 @@ def show_object(
     from kb import Actionary
 
     with Actionary.open(actionary, read_only=True) as opened:
-        print_fields(name, opened.object_profile(name), json=json)
+        _print_fields(name, opened.object_profile(name), json=json)
+
+
+def _print_fields(title: str, fields: Mapping[str, Collection[str]], *, json: bool) -> None:
+    """Fields with their values, a line each; a field without any is said to be empty."""
+    lines = (
+        f"  {name}: {', '.join(values) or '(empty: nothing is recorded)'}"
+        for name, values in fields.items()
+    )
+    value = {"name": title, **{name: list(values) for name, values in fields.items()}}
+    answer(value, [title, *lines], json=json)
 
 
 def _declare(
@@ -140,7 +144,6 @@ def _declare(
     json: bool,
 ) -> None:
     """Declare what an agent, or every object of a kind, can do or be used for."""
-    from capar.model.errors import UnknownNameError
     from kb import Actionary
 
     require_actionary(actionary, observed=True)
@@ -150,30 +153,25 @@ def _declare(
             raise UnknownNameError("agent" if agent else "kind of object", agent or kind, known)
         for action in actions:
             opened.add_ability(action, agent=agent, kind=kind)
-    if json:
-        print_json({"agent" if agent else "kind": agent or kind, "declared": actions})
-    else:
-        typer.echo(f"declared of {agent or f'every {kind}'}: {', '.join(actions)}")
+    value = {"agent" if agent else "kind": agent or kind, "declared": actions}
+    text = f"declared of {agent or f'every {kind}'}: {', '.join(actions)}"
+    answer(value, [text], json=json)
 
 
 def correct(
     segment: Annotated[
-        str,
-        typer.Argument(
-            metavar="SEGMENT",
-            help="CAPTURE/END_EFFECTOR/INDEX; CAPTURE alone prints what was done in it.",
-        ),
+        str, Argument(help="CAPTURE/END_EFFECTOR/INDEX; CAPTURE alone prints what was done in it.")
     ],
-    name: Annotated[str, typer.Option(help="What was done in it.")] = "",
-    start: Annotated[float | None, typer.Option(metavar="SECONDS", help="When it began.")] = None,
-    end: Annotated[float | None, typer.Option(metavar="SECONDS", help="When it ended.")] = None,
+    name: Annotated[str, Option(help="What was done in it.")] = "",
+    start: Annotated[float | None, Option(metavar="SECONDS", help="When it began.")] = None,
+    end: Annotated[float | None, Option(metavar="SECONDS", help="When it ended.")] = None,
     split: Annotated[
-        float | None, typer.Option(metavar="SECONDS", help="It is two, of which one ends here.")
+        float | None, Option(metavar="SECONDS", help="It is two, of which one ends here.")
     ] = None,
-    join: Annotated[bool, typer.Option("--join", help="It is one with the next.")] = False,
-    by: Annotated[str, typer.Option(metavar="PERSON", help="Who says so.")] = "",
+    join: Annotated[bool, Option("--join", help="It is one with the next.")] = False,
+    by: Annotated[str, Option(metavar="PERSON", help="Who says so.")] = "",
     labels: Annotated[
-        Path | None, typer.Option(help="Write what was done as labels, a CSV table, to this file.")
+        Path | None, Option(help="Write what was done as labels, a CSV table, to this file.")
     ] = None,
     json: Json = False,
     wait: Wait = 0.0,
@@ -195,28 +193,32 @@ def correct(
     if labels is not None:
         check_writable(labels)
     require_actionary(actionary, observed=True)
-    asked = (name, start, end, split, join) != ("", None, None, None, False)
-    capture, address = segment, None
-    if asked or by:
-        capture, address = split_capture(segment)
+    change = (name, start, end, split, join)
+    asked = by or change != ("", None, None, None, False)
+    capture, address = split_capture(segment) if asked else (segment, None)
     with Actionary.open(actionary, read_only=address is None, wait_s=wait) as opened:
         if address:
-            change = Correction(name, start, end, split, join)
-            claim(opened.store, replace(address, capture=capture), change, by=by)
+            address = replace(address, capture=capture)
+            claim(opened.store, address, Correction(*change), by=by)
             _note_new_name(name, actionary)
         spans = account(opened.store, capture)
     if labels is not None:
-        _write_labels(labels, spans)
-    if json:
-        print_json(list(spans))
-        return
+        text = StringIO()
+        table = csv.writer(text, lineterminator="\n")
+        table.writerow(LABEL_COLUMNS)
+        for span in spans:
+            first = span.objects.split(" ")[0]
+            table.writerow((span.ee, span.start_s, span.end_s, span.name, first))
+        emit(text.getvalue(), labels)
     counts: dict[str, int] = {}
+    lines = []
     for span in spans:
         at = counts[span.ee] = counts.get(span.ee, -1) + 1
-        who = f"  says {span.by}" if span.by else ""
-        typer.echo(
-            f"{capture}/{span.ee}/{at}  {span.start_s:.3f} to {span.end_s:.3f} s  {span.name}{who}"
+        lines.append(
+            f"{capture}/{span.ee}/{at}  {span.start_s:.3f} to {span.end_s:.3f} s  {span.name}"
+            + (f"  says {span.by}" if span.by else "")
         )
+    answer(list(spans), lines, json=json)
 
 
 def _note_new_name(name: str, actionary: str | None) -> None:
@@ -232,17 +234,8 @@ def _note_new_name(name: str, actionary: str | None) -> None:
         typer.echo(f"note: no rule gives the name {name!r}{hint}", err=True)
 
 
-def _write_labels(path: Path, spans: "Sequence[Span]") -> None:
-    with written(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(LABEL_COLUMNS)
-        for span in spans:
-            first = span.objects.split(" ")[0]
-            table.writerow((span.ee, span.start_s, span.end_s, span.name, first))
-
-
 def forget(
-    names: Annotated[list[str], typer.Argument(help="The observations, by their captures' names.")],
+    names: Annotated[list[str], Argument(help="The observations, by their captures' names.")],
     wait: Wait = 0.0,
     actionary: Place = None,
 ) -> None:

@@ -5,9 +5,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
 from capar.cli.options import Corrected, Json, Place
-from capar.cli.output import console, print_json
+from capar.cli.output import answer, console
+from capar.model.errors import CaparError, FileError, UnknownNameError
 
 if TYPE_CHECKING:
     from kb.store.answers import Answer
@@ -32,26 +34,24 @@ def _parameters(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
 def query(
     question: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             help="A question's name, SPARQL, a file of SPARQL, or - for standard input.",
             autocompletion=_names,
-            show_default=False,
         ),
     ] = None,
     parameters: Annotated[
         list[str] | None,
-        typer.Argument(
+        Argument(
             metavar="[NAME=VALUE]...",
             help="What a named question is asked of.",
             autocompletion=_parameters,
-            show_default=False,
         ),
     ] = None,
-    list_: Annotated[bool, typer.Option("--list", help="List the named questions.")] = False,
-    format_: Annotated[str, typer.Option("--format", help="table, csv, json or turtle.")] = "table",
-    json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
+    list_: Annotated[bool, Option("--list", help="List the named questions.")] = False,
+    format_: Annotated[str, Option("--format", help="table, csv, json or turtle.")] = "table",
+    json: Annotated[bool, Option("--json", help="The same as --format json.")] = False,
     time_limit: Annotated[
-        float, typer.Option(metavar="SECONDS", help="How long the question may take.")
+        float, Option(metavar="SECONDS", help="How long the question may take.")
     ] = 30.0,
     corrected: Corrected = False,
     actionary: Place = None,
@@ -60,11 +60,11 @@ def query(
 
     A query can neither write nor run longer than --time-limit.
     """
-    from capar.model.errors import UnknownNameError
     from kb import Actionary
+    from kb.corrections import corrected as corrected_copy
     from kb.queries.questions import FORMATS, check_known, listing, notes
     from kb.queries.questions import question as named
-    from kb.store.sparql import unknown_terms
+    from kb.store import sparql
 
     chosen = "json" if json else format_
     if chosen not in FORMATS:
@@ -72,32 +72,28 @@ def query(
     if list_ or question is None:
         _print(listing(), chosen)
         return
-    given = _given(parameters or [], question)
     raw = _raw(question)
-    text = _text(question, raw, given)
-    for sentence in unknown_terms(raw or ""):
+    given = {} if raw else _given(parameters or [], question)
+    if raw is not None and parameters:
+        raise CaparError("SPARQL takes no parameters; write the values into it")
+    text = named(question).bind(given) if raw is None else sparql.prepare(raw)
+    for sentence in sparql.unknown_terms(raw or ""):
         typer.echo(f"warning: {sentence}", err=True)
     with Actionary.open(actionary, read_only=True) as opened:
-        store = opened.store
-        if corrected:
-            from kb.corrections import corrected as corrected_copy
-
-            store = corrected_copy(store)
-        answer = store.ask_within(text, seconds=time_limit)
-        if raw is None and not answer.rows:
+        store = corrected_copy(opened.store) if corrected else opened.store
+        found = store.ask_within(text, seconds=time_limit)
+        if raw is None and not found.rows:
             check_known(store, named(question), given)
-        _print(answer, chosen)
-        if chosen == "table" and answer.variables:
-            said = notes(named(question), answer) if raw is None and answer.rows else []
-            for sentence in said:
+        _print(found, chosen)
+        if chosen == "table" and found.variables:
+            for sentence in notes(named(question), found) if raw is None and found.rows else ():
                 typer.echo(f"note: {sentence}", err=True)
-            if not answer.rows:
+            if not found.rows:
                 typer.echo("nothing found", err=True)
 
 
 def _given(parameters: list[str], asked: str) -> dict[str, str]:
     """What a named question is asked of, by parameter."""
-    from capar.model.errors import CaparError
     from kb.queries.questions import questions
 
     given = {}
@@ -111,22 +107,8 @@ def _given(parameters: list[str], asked: str) -> dict[str, str]:
     return given
 
 
-def _text(question: str, raw: str | None, given: dict[str, str]) -> str:
-    """The SPARQL that is meant."""
-    from capar.model.errors import CaparError
-    from kb.queries.questions import question as named
-    from kb.store import sparql
-
-    if raw is None:
-        return named(question).bind(given)
-    if given:
-        raise CaparError("SPARQL takes no parameters; write the values into it")
-    return sparql.prepare(raw)
-
-
 def _raw(question: str) -> str | None:
     """SPARQL that was given itself, or by a file or standard input; None for a named question."""
-    from capar.model.errors import FileError
     from kb.store import sparql
 
     if question == "-":
@@ -146,24 +128,22 @@ def _raw(question: str) -> str | None:
     return question if sparql.is_meant(question) else None
 
 
-def _print(answer: "Answer", chosen: str) -> None:
+def _print(found: "Answer", chosen: str) -> None:
+    from capar.views.tables import terminal_table
     from kb.queries.questions import FORMATS, cells, header
 
-    if chosen != "table" or not sys.stdout.isatty():
-        typer.echo(FORMATS[chosen](answer), nl=False)
-        return
-    from capar.views.tables import terminal_table
-
-    console().print(terminal_table(header(answer), list(cells(answer))))
+    if chosen == "table" and sys.stdout.isatty():
+        console().print(terminal_table(header(found), list(cells(found))))
+    else:
+        typer.echo(FORMATS[chosen](found), nl=False)
 
 
 def show(
-    name: Annotated[str, typer.Argument(help="The complex action, or an observation of it.")],
-    format_: Annotated[str, typer.Option("--format", help="text, svg or turtle.")] = "text",
+    name: Annotated[str, Argument(help="The complex action, or an observation of it.")],
+    format_: Annotated[str, Option("--format", help="text, svg or turtle.")] = "text",
     actionary: Place = None,
 ) -> None:
     """Draw a complex action: its steps, and who was seen to do it."""
-    from capar.model.errors import UnknownNameError
     from kb import Actionary
     from kb.reports.complex_actions import FORMATS
 
@@ -175,8 +155,7 @@ def show(
 
 def check(
     shacl: Annotated[
-        bool,
-        typer.Option("--shacl", help="Have pySHACL check every observation as well; minutes."),
+        bool, Option("--shacl", help="Have pySHACL check every observation as well; minutes.")
     ] = False,
     json: Json = False,
     actionary: Place = None,
@@ -191,28 +170,25 @@ def check(
     with Actionary.open(actionary, read_only=True) as opened:
         problems = checked(opened.store, full=shacl)
         count = len(opened.observations())
-    if json:
-        print_json(problems)
-    else:
-        for problem in problems:
-            whose = f"{problem.observation}: " if problem.observation else ""
-            typer.echo(f"{whose}{problem.thing}: {problem.message}")
-        typer.echo(f"{count} observations, {len(problems)} problems")
+    lines = [
+        (f"{each.observation}: " if each.observation else "") + f"{each.thing}: {each.message}"
+        for each in problems
+    ]
+    answer(problems, [*lines, f"{count} observations, {len(problems)} problems"], json=json)
     if problems:
         raise typer.Exit(2)
 
 
 def serve(
-    host: Annotated[str, typer.Option(help="Where to listen; by default on this computer.")] = (
+    host: Annotated[str, Option(help="Where to listen; by default on this computer.")] = (
         "127.0.0.1"
     ),
-    port: Annotated[int, typer.Option(min=0, max=65535, help="0 takes any free one.")] = 7879,
+    port: Annotated[int, Option(min=0, max=65535, help="0 takes any free one.")] = 7879,
     token: Annotated[
-        str,
-        typer.Option(envvar="CAPAR_TOKEN", help="Let clients that bear this token add statements."),
+        str, Option(envvar="CAPAR_TOKEN", help="Let clients that bear this token add statements.")
     ] = "",
     time_limit: Annotated[
-        float, typer.Option(metavar="SECONDS", help="How long a query may take.")
+        float, Option(metavar="SECONDS", help="How long a query may take.")
     ] = 30.0,
     actionary: Place = None,
 ) -> None:

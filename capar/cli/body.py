@@ -1,16 +1,17 @@
 """Bodies: fit one to a capture, let a virtual one perform, map a performance to another."""
 
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer import Argument, Option
 
 from capar.cli.options import Assume, Capture, Json, NewBundle
-from capar.cli.output import check_new_folder, print_json, written
+from capar.cli.output import answer, check_new_folder, save
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from capar.body.sensor_fitting import Fit
 
 AT_LIMIT = 0.01
@@ -24,22 +25,22 @@ def fit(
     capture: Capture,
     json: Json = False,
     bvh: Annotated[
-        Path | None, typer.Option(help="Write the skeleton's motion: BVH, y up, centimetres.")
+        Path | None, Option(help="Write the skeleton's motion: BVH, y up, centimetres.")
     ] = None,
     glb: Annotated[
-        Path | None, typer.Option(help="Write the moving mannequin: binary glTF, y up, metres.")
+        Path | None, Option(help="Write the moving mannequin: binary glTF, y up, metres.")
     ] = None,
     c3d: Annotated[
-        Path | None, typer.Option(help="Write the segments' poses: C3D, ROTATION data, z up, mm.")
+        Path | None, Option(help="Write the segments' poses: C3D, ROTATION data, z up, mm.")
     ] = None,
     npz: Annotated[
-        Path | None, typer.Option(help="Write postures, joint angles and poses as NumPy arrays.")
+        Path | None, Option(help="Write postures, joint angles and poses as NumPy arrays.")
     ] = None,
     csv: Annotated[
-        Path | None, typer.Option(help="Write the pelvis's pose and joint angles as a table.")
+        Path | None, Option(help="Write the pelvis's pose and joint angles as a table.")
     ] = None,
     mjcf: Annotated[
-        Path | None, typer.Option(help="Write the body as a MuJoCo model; --npz has its qpos.")
+        Path | None, Option(help="Write the body as a MuJoCo model; --npz has its qpos.")
     ] = None,
 ) -> None:
     """Fit a human body to a capture, and print the residuals.
@@ -48,73 +49,59 @@ def fit(
     motion.
     """
     from capar.body.body_fitting import fit_body, fit_warnings
+    from capar.export.bvh import bvh_text
+    from capar.export.c3d import c3d_bytes
+    from capar.export.glb import glb_bytes
+    from capar.export.motion_tables import csv_text, mjcf_text, write_npz
     from extractors.readers.bundle.capture_toml import read_capture
 
     recorded = read_capture(capture)
     made = fit_body(capture, recorded)
     warnings = fit_warnings(capture, recorded, made)
-    _write(made, {"bvh": bvh, "glb": glb, "c3d": c3d, "npz": npz, "csv": csv, "mjcf": mjcf})
-    if json:
-        print_json({**_answer(made), "warnings": warnings})
-    else:
-        _print_fit(made)
-        for warning in warnings:
-            typer.echo(f"warning: {warning}")
-
-
-def _write(made: "Fit", wanted: "Mapping[str, Path | None]") -> None:
-    """Write the files that are wanted, each whole or not at all."""
-    from capar.export.bvh import bvh_text
-    from capar.export.c3d import c3d_bytes
-    from capar.export.glb import glb_bytes
-    from capar.export.motion_tables import csv_text, mjcf_text, write_npz
-
     motion = (made.human, made.times, made.motion)
-    makers = {
-        "bvh": lambda: bvh_text(*motion).encode(),
-        "glb": lambda: glb_bytes(*motion),
-        "c3d": lambda: c3d_bytes(*motion),
-        "csv": lambda: csv_text(*motion).encode(),
-        "mjcf": lambda: mjcf_text(made.human).encode(),
-    }
-    for form, path in wanted.items():
-        if path is not None:
-            with written(path) as draft:
-                if form == "npz":
-                    write_npz(draft, *motion)
-                else:
-                    draft.write_bytes(makers[form]())
-            typer.echo(f"wrote {path}", err=True)
+    if bvh:
+        save(bvh, bvh_text(*motion))
+    if glb:
+        save(glb, glb_bytes(*motion))
+    if c3d:
+        save(c3d, c3d_bytes(*motion))
+    if npz:
+        save(npz, lambda draft: write_npz(draft, *motion))
+    if csv:
+        save(csv, csv_text(*motion))
+    if mjcf:
+        save(mjcf, mjcf_text(made.human))
+    value = _residuals(made)
+    lines = [*_fit_lines(value), *(f"warning: {warning}" for warning in warnings)]
+    answer({**value, "warnings": warnings}, lines, json=json)
 
 
-def _answer(made: "Fit") -> dict[str, Any]:
+def _residuals(made: "Fit") -> dict[str, Any]:
     """Residuals by sensor, joint or marker, shares of time at joint limits, and the time taken."""
     import numpy as np
 
-    def median_deg(place: str) -> float | None:
-        """Median angle from a sensor; None for joints and markers, which are points."""
-        turned = made.residuals_rad.get(place)
-        return None if turned is None else round(float(np.degrees(np.nanmedian(turned))), 4)
-
-    shares = dict(zip(made.human.joints, made.at_limit.mean(axis=0), strict=True))
+    sensors = {}
+    for place, metres in made.residuals_m.items():
+        turned = made.residuals_rad.get(place)  # None for joints and markers, which are points
+        sensors[place] = {
+            "median_mm": round(1e3 * float(np.nanmedian(metres)), 3),
+            "p95_mm": round(1e3 * float(np.nanpercentile(metres, 95)), 3),
+            "median_deg": None
+            if turned is None
+            else round(float(np.degrees(np.nanmedian(turned))), 4),
+            "lost_frames": int(made.bridged[place].sum()),
+        }
+    shares = zip(made.human.joints, made.at_limit.mean(axis=0), strict=True)
     at_limit = {
         name: round(float(share), 4)
-        for name, share in shares.items()
+        for name, share in sorted(shares, key=lambda row: (-round(float(row[1]), 4), row[0]))
         if share >= AT_LIMIT and not any(part in name for part in OPEN_HAND)
     }
     return {
-        "sensors": {
-            place: {
-                "median_mm": round(1e3 * float(np.nanmedian(metres)), 3),
-                "p95_mm": round(1e3 * float(np.nanpercentile(metres, 95)), 3),
-                "median_deg": median_deg(place),
-                "lost_frames": int(made.bridged[place].sum()),
-            }
-            for place, metres in made.residuals_m.items()
-        },
+        "sensors": sensors,
         "median_mm": round(1e3 * float(np.nanmedian([*made.residuals_m.values()])), 3),
         "stature_m": round(made.human.measures["stature"], 4),
-        "at_limit": dict(sorted(at_limit.items(), key=lambda row: (-row[1], row[0]))),
+        "at_limit": at_limit,
         "measures_given": sorted(made.human.measures.given),
         "frames": len(made.times),
         "motion_s": round(float(made.times[-1] - made.times[0]), 4),
@@ -122,44 +109,42 @@ def _answer(made: "Fit") -> dict[str, Any]:
     }
 
 
-def _print_fit(made: "Fit") -> None:
-    """Print the same for people."""
-    answer = _answer(made)
-    wide = max(14, *map(len, answer["sensors"]))
-    typer.echo(f"{'followed':{wide}}  median [mm]  95 % [mm]  median [deg]  lost [frames]")
-    for place, row in answer["sensors"].items():
+def _fit_lines(value: dict[str, Any]) -> Iterator[str]:
+    """The same for people."""
+    from capar.views.tables import aligned
+
+    rows = [("followed", "median [mm]", "95 % [mm]", "median [deg]", "lost [frames]")]
+    for place, row in value["sensors"].items():
         angle = "-" if row["median_deg"] is None else f"{row['median_deg']:.2f}"
-        typer.echo(
-            f"{place:{wide}}  {row['median_mm']:11.1f}  {row['p95_mm']:9.1f}"
-            f"  {angle:>12}  {row['lost_frames']:13}"
-        )
-    typer.echo(f"median of all: {answer['median_mm']:.1f} mm, stature {answer['stature_m']:.2f} m")
-    for joint, share in answer["at_limit"].items():
-        typer.echo(f"{joint} is at its limit for {share:.0%} of the time")
-    given = ", ".join(answer["measures_given"]) or "none"
-    typer.echo(f"measures given: {given}; the others are estimated")
-    span, took = answer["motion_s"], answer["seconds"]
-    typer.echo(f"{answer['frames']} frames, {span:.1f} s of motion, fitted in {took:.1f} s")
+        figures = (f"{row['median_mm']:.1f}", f"{row['p95_mm']:.1f}", angle)
+        rows.append((place, *figures, str(row["lost_frames"])))
+    yield from aligned(rows, right={1, 2, 3, 4})
+    yield f"median of all: {value['median_mm']:.1f} mm, stature {value['stature_m']:.2f} m"
+    for joint, share in value["at_limit"].items():
+        yield f"{joint} is at its limit for {share:.0%} of the time"
+    given = ", ".join(value["measures_given"]) or "none"
+    yield f"measures given: {given}; the others are estimated"
+    span, took = value["motion_s"], value["seconds"]
+    yield f"{value['frames']} frames, {span:.1f} s of motion, fitted in {took:.1f} s"
 
 
 def perform(
     action: Annotated[
         str,
-        typer.Argument(
+        Argument(
             help="drink, sip, touch, touch_from_rest, slide, carry, carry_tray, carry_two, "
             "pick_up, turn, push, pour, door, drawer, wipe or toss; of two bodies hand_over."
         ),
     ],
-    output: Annotated[Path, typer.Option("--output", "-o", help="A new folder for the capture.")],
+    output: Annotated[Path, Option("--output", "-o", help="A new folder for the capture.")],
     agent: Annotated[
-        str,
-        typer.Option(help="Who performs: man, woman or child; of two bodies such as man+woman."),
+        str, Option(help="Who performs: man, woman or child; of two bodies such as man+woman.")
     ] = "man",
-    rate: Annotated[float, typer.Option(help="Frames a second.", min=10.0, max=480.0)] = 60.0,
+    rate: Annotated[float, Option(help="Frames a second.", min=10.0, max=480.0)] = 60.0,
     noisy: Annotated[
-        bool, typer.Option("--noisy", help="With the noise and the mounts of a magnetic tracker.")
+        bool, Option("--noisy", help="With the noise and the mounts of a magnetic tracker.")
     ] = False,
-    seed: Annotated[int, typer.Option(help="The draw of the noise.", min=0)] = 3,
+    seed: Annotated[int, Option(help="The draw of the noise.", min=0)] = 3,
 ) -> None:
     """Let a virtual body perform an action, and write the capture.
 
@@ -177,20 +162,16 @@ def perform(
 
     check_new_folder(output)
     if action in JOINT_ACTIONS:
-        pair = (*agent.split("+"), *agent.split("+"))[:2]
-        made = performed_together(action, (pair[0], pair[1]), rate_hz=rate)
-        both = joint_capture(action, (pair[0], pair[1]), rate_hz=rate, noisy=noisy, seed=seed)
-        write_bundle(both, truth_together(made), output)
-        typer.echo(
-            f"wrote {output}: {action} by a {pair[0]} and a {pair[1]}, {both.times[-1]:.1f} s at "
-            f"{rate:g} Hz",
-            err=True,
-        )
-        return
-    capture = action_capture(action, agent, rate_hz=rate, noisy=noisy, seed=seed)
-    write_bundle(capture, truth_of(performed(action, agent, rate_hz=rate)), output)
+        one, other, *_ = (*agent.split("+"), *agent.split("+"))
+        made = performed_together(action, (one, other), rate_hz=rate)
+        capture = joint_capture(action, (one, other), rate_hz=rate, noisy=noisy, seed=seed)
+        truth, who = truth_together(made), f"a {one} and a {other}"
+    else:
+        capture = action_capture(action, agent, rate_hz=rate, noisy=noisy, seed=seed)
+        truth, who = truth_of(performed(action, agent, rate_hz=rate)), f"a {agent}"
+    write_bundle(capture, truth, output)
     typer.echo(
-        f"wrote {output}: {action} by a {agent}, {capture.times[-1]:.1f} s at {rate:g} Hz, "
+        f"wrote {output}: {action} by {who}, {capture.times[-1]:.1f} s at {rate:g} Hz, "
         f"{len(capture.sensors)} sensors and {len(capture.objects)} objects",
         err=True,
     )
@@ -199,12 +180,12 @@ def perform(
 def map_command(
     capture: Capture,
     agent: Annotated[
-        str, typer.Option(help="Who performs: man, woman, child, or same for the one recorded.")
+        str, Option(help="Who performs: man, woman, child, or same for the one recorded.")
     ] = "same",
     output: NewBundle = None,
     cutoff: Annotated[
         float,
-        typer.Option(
+        Option(
             help="Cutoff of the low-pass filter that takes noise from the recorded paths [Hz]; "
             "0 follows them as they are.",
             min=0.0,
@@ -221,26 +202,20 @@ def map_command(
     Nothing is planned: no grip is fitted to the hand, and no obstacle is avoided. Every gate is
     printed, and how far hands and things are from their recorded ways.
     """
-    from dataclasses import replace
-
-    from capar.cli.regenerate import print_quality, quality_answer
+    from capar.cli.regenerate import quality_lines, quality_value
     from capar.pipelines.round_trips import SAME, body, observed_source
     from capar.regeneration import map_directly
-    from capar.regeneration.captures import capture_of, read_completion, write_motion
+    from capar.regeneration.captures import capture_of, write_motion
     from capar.regeneration.direct_mapping import departures
 
     if output:
         check_new_folder(output)
-    completion = read_completion(assume) if assume else None
-    source = observed_source(capture, completion, cutoff_hz=cutoff or None)
+    source = observed_source(capture, assume, cutoff_hz=cutoff or None)
     motion, quality = map_directly(source, body(agent, source))
     quality = replace(quality, told=(*quality.told, *departures(motion)))
     if output:
         name = agent if agent != SAME else source.capture.agent.name
         write_motion(motion, capture_of(motion, name=source.capture.name, agent=name), output)
-    if json:
-        print_json(quality_answer(motion, quality))
-        return
-    print_quality(motion, quality)
-    if output:
+    answer(quality_value(motion, quality), quality_lines(motion, quality), json=json)
+    if output and not json:
         typer.echo(f"wrote {output}", err=True)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer import Argument, Option
 
 from capar.cli.options import Beside, Capture, Json, ProfileName, Rules, Set, Steady, rule_base
 from capar.cli.output import console, print_json, written
@@ -22,12 +23,11 @@ PAIR_COLUMNS = ("nearest pairs", "", "least m", "at s", "near for s")
 
 def inspect(
     place: Annotated[
-        str, typer.Argument(help="A folder with a capture.toml (and :take), or a motion file.")
+        str, Argument(help="A folder with a capture.toml (and :take), or a motion file.")
     ],
     json: Json = False,
     calibration: Annotated[
-        bool,
-        typer.Option("--calibration", help="Print what is decided once for the whole capture."),
+        bool, Option("--calibration", help="Print what is decided once for the whole capture.")
     ] = False,
     set_: Set = None,
 ) -> None:
@@ -166,15 +166,13 @@ def _figure(value: float | None) -> str:
 
 
 def new_capture(
-    files: Annotated[
-        list[Path] | None, typer.Argument(help="Motion files of one trial.", show_default=False)
-    ] = None,
+    files: Annotated[list[Path] | None, Argument(help="Motion files of one trial.")] = None,
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="The capture.toml to write, or its folder.")
+        Path, Option("--output", "-o", help="The capture.toml to write, or its folder.")
     ] = Path("capture.toml"),
-    force: Annotated[bool, typer.Option("--force", help="Overwrite what is there.")] = False,
+    force: Annotated[bool, Option("--force", help="Overwrite what is there.")] = False,
     schema: Annotated[
-        bool, typer.Option("--schema", help="Print the JSON schema of capture.toml, for editors.")
+        bool, Option("--schema", help="Print the JSON schema of capture.toml, for editors.")
     ] = False,
 ) -> None:
     """Write a commented capture.toml for motion files.
@@ -220,20 +218,17 @@ def new_capture(
 def view(
     capture: Capture,
     html: Annotated[
-        Path | None,
-        typer.Option(help="Write one HTML file that opens in a browser without a network."),
+        Path | None, Option(help="Write one HTML file that opens in a browser without a network.")
     ] = None,
-    png: Annotated[Path | None, typer.Option(help="Draw the moment --at to a PNG file.")] = None,
-    at: Annotated[
-        float | None, typer.Option(help="Which moment [s]; the middle if not given.")
-    ] = None,
+    png: Annotated[Path | None, Option(help="Draw the moment --at to a PNG file.")] = None,
+    at: Annotated[float | None, Option(help="Which moment [s]; the middle if not given.")] = None,
     profile: ProfileName = "extended",
     rules: Rules = None,
     fit: Annotated[
-        bool, typer.Option("--fit", help="Fit a human body to the recording and show it too.")
+        bool, Option("--fit", help="Fit a human body to the recording and show it too.")
     ] = False,
     only_bodies: Annotated[
-        bool, typer.Option("--only-bodies", help="Show the recording without observing it.")
+        bool, Option("--only-bodies", help="Show the recording without observing it.")
     ] = False,
 ) -> None:
     """Show the bodies of a capture in three dimensions.
@@ -277,12 +272,11 @@ def facts(
     capture: Capture,
     profile: ProfileName = "extended",
     ranked: Annotated[
-        bool,
-        typer.Option(help="Number the borders too, so that the rule files can read the program."),
+        bool, Option(help="Number the borders too, so that the rule files can read the program.")
     ] = True,
     derive: Annotated[
         bool,
-        typer.Option(
+        Option(
             "--derive",
             help="Add contact(Body, Other, Frame), moved(Object, Segment) and "
             "regrasps(Segment, Object) by the rules.",

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer import Argument, Option
 
 from capar.cli.options import Beside, Json, ProfileName, Rules, Steady, rule_base
 from capar.cli.output import check_writable, console, print_json, progress, written
@@ -30,7 +31,7 @@ Cell = Callable[[Scores], str]
 def evaluate(
     places: Annotated[
         list[str],
-        typer.Argument(
+        Argument(
             metavar="EVALUATION|CAPTURE LABELS...",
             help="An evaluation file; or captures, each followed by its label file. "
             "BUNDLE:PATTERN is every take whose name fits, {take} its name in the label file's.",
@@ -38,38 +39,29 @@ def evaluate(
     ],
     mapping: Annotated[
         Path | None,
-        typer.Option(
-            "--mapping",
-            "-m",
-            help="Actions: TOML file from our names to the labels.",
-            show_default=False,
-        ),
+        Option("--mapping", "-m", help="Actions: TOML file from our names to the labels."),
     ] = None,
-    kind: Annotated[Kind, typer.Option(help="What the labels are about.")] = Kind.ACTIONS,
+    kind: Annotated[Kind, Option(help="What the labels are about.")] = Kind.ACTIONS,
     takes: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Of an evaluation file, only takes that fit this pattern; may be repeated.",
-            show_default=False,
-        ),
+        Option(help="Of an evaluation file, only takes that fit this pattern; may be repeated."),
     ] = None,
     profile: ProfileName = "extended",
     frames_of: Annotated[
-        str, typer.Option(help="File of the capture whose frames the labels count.")
+        str, Option(help="File of the capture whose frames the labels count.")
     ] = "",
     contradictions: Annotated[
         Contradictions,
-        typer.Option(help="What to do about labels that overlap or end before they start."),
+        Option(help="What to do about labels that overlap or end before they start."),
     ] = Contradictions.REFUSE,
     rules: Rules = None,
     actionary: Beside = None,
     steady: Steady = None,
     plot: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             help="Draw the labels beside the segments, to a .png, .svg or .pdf file; {capture} in "
-            "its name stands for the capture's.",
-            show_default=False,
+            "its name stands for the capture's."
         ),
     ] = None,
     json: Json = False,
@@ -325,7 +317,7 @@ TABLES: dict[str, tuple[str, str, dict[str, Cell]]] = {
 
 def test(
     files: Annotated[
-        list[Path], typer.Argument(help="Files of claims, *.motion.toml, or folders of them.")
+        list[Path], Argument(help="Files of claims, *.motion.toml, or folders of them.")
     ],
     rules: Rules = None,
     actionary: Beside = None,

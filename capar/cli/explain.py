@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer import Argument, Option
 
 from capar.cli.options import Beside, Rules, Steady, rule_base
 from capar.cli.output import print_json
@@ -18,35 +19,34 @@ if TYPE_CHECKING:
 
 def explain(
     capture: Annotated[
-        str,
-        typer.Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take."),
+        str, Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take.")
     ],
     segment: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             help="END_EFFECTOR/INDEX, such as right_hand/3; END_EFFECTOR for all of its own; "
             "without it, every one."
         ),
     ] = None,
     why_not: Annotated[
         str | None,
-        typer.Option(
+        Option(
             help="A name that it has not: the rule for it that comes nearest, with the conditions "
             "that it lacks; then the smallest change of what was measured."
         ),
     ] = None,
     every: Annotated[
-        bool, typer.Option("--all", help="With --why-not: every answer that is as small.")
+        bool, Option("--all", help="With --why-not: every answer that is as small.")
     ] = False,
-    profile: Annotated[str, typer.Option(help="The rules: extended or thesis.")] = "extended",
+    profile: Annotated[str, Option(help="The rules: extended or thesis.")] = "extended",
     rules: Rules = None,
     actionary: Beside = None,
     steady: Steady = None,
-    json: Annotated[bool, typer.Option("--json", help="Print the whole tree as JSON.")] = False,
-    svg: Annotated[Path | None, typer.Option(help="Draw the tree to this file.")] = None,
+    json: Annotated[bool, Option("--json", help="Print the whole tree as JSON.")] = False,
+    svg: Annotated[Path | None, Option(help="Draw the tree to this file.")] = None,
     plot: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             help="Draw the quantities of SEGMENT's conditions over time to this .png, .svg or "
             ".pdf, each with its limits and the intervals of the facts about it."
         ),

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer import Argument, Option
 
 from capar.cli.options import (
     Beside,
@@ -45,9 +46,9 @@ class Detail(StrEnum):
 def describe(
     capture: Capture,
     detail: Annotated[
-        Detail, typer.Option(help="Every step, or a summary of what changed.")
+        Detail, Option(help="Every step, or a summary of what changed.")
     ] = Detail.STEPS,
-    timed: Annotated[bool, typer.Option("--timed", help="Say when each step was.")] = False,
+    timed: Annotated[bool, Option("--timed", help="Say when each step was.")] = False,
     profile: ProfileName = "extended",
     corrected: Corrected = False,
     rules: Rules = None,
@@ -90,8 +91,7 @@ def _corrected(observation: "Observation", actionary: str | None) -> "Observatio
 
 def parse(
     sentence: Annotated[
-        str,
-        typer.Argument(help="Such as: pick up the mug with both hands and put it in the box"),
+        str, Argument(help="Such as: pick up the mug with both hands and put it in the box")
     ],
     actionary: Place = None,
     rules: Rules = None,
@@ -152,17 +152,16 @@ FIRST_SENSES = 4
 
 
 def verb(
-    lemma: Annotated[str, typer.Argument(help="A verb, such as carry or 'pick up'.")] = "",
+    lemma: Annotated[str, Argument(help="A verb, such as carry or 'pick up'.")] = "",
     segment: Annotated[
-        str,
-        typer.Option("--for", help="A segment, as CAPTURE/END_EFFECTOR/INDEX: which verbs fit it?"),
+        str, Option("--for", help="A segment, as CAPTURE/END_EFFECTOR/INDEX: which verbs fit it?")
     ] = "",
     kinds: Annotated[
-        bool, typer.Option("--kinds", help="Which primitives do the verb, or a kind of it?")
+        bool, Option("--kinds", help="Which primitives do the verb, or a kind of it?")
     ] = False,
     actionary: Place = None,
     rules: Rules = None,
-    most: Annotated[int, typer.Option(help="How many verbs of a segment to show.", min=1)] = 15,
+    most: Annotated[int, Option(help="How many verbs of a segment to show.", min=1)] = 15,
     json: Json = False,
 ) -> None:
     """Say what is known of a verb, or which verbs fit a segment.
@@ -290,8 +289,8 @@ def load(actionary: Place = None, rules: Rules = None, new: New = False) -> None
 
 @lexicon.command("import")
 def import_words(
-    source: Annotated[str, typer.Argument(help="What to import: verbnet.")],
-    folder: Annotated[Path, typer.Argument(help="The folder with VerbNet's XML files.")],
+    source: Annotated[str, Argument(help="What to import: verbnet.")],
+    folder: Annotated[Path, Argument(help="The folder with VerbNet's XML files.")],
     actionary: Place = None,
     new: New = False,
     json: Json = False,
@@ -355,15 +354,15 @@ class Format(StrEnum):
 def linguistics(
     actionary: Place = None,
     form: Annotated[
-        Format, typer.Option("--format", help="How to write it; svg is the drawing alone.")
+        Format, Option("--format", help="How to write it; svg is the drawing alone.")
     ] = Format.TEXT,
     rules: Rules = None,
     output: OutputFile = None,
     cases: Annotated[
-        Path | None, typer.Option(help="Folder of rule cases that count as proof, as tests/rules.")
+        Path | None, Option(help="Folder of rule cases that count as proof, as tests/rules.")
     ] = None,
     corrected: Corrected = False,
-    json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
+    json: Annotated[bool, Option("--json", help="The same as --format json.")] = False,
 ) -> None:
     """Report which verbs and verb classes are addressed, with the proof."""
     from capar.pipelines.linguistic_report import cases_of, primitive_files

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
 from capar.cli.options import (
     Json,
@@ -54,17 +55,16 @@ class OnUnknown(StrEnum):
 def observe(
     capture: Annotated[
         str,
-        typer.Argument(
+        Argument(
             help="A capture's folder or capture.toml; FOLDER:TAKE for one of its takes. "
-            "Not with --device.",
-            show_default=False,
+            "Not with --device."
         ),
     ] = "",
     profile: ProfileName = "extended",
-    name: Annotated[str, typer.Option(help="What the whole action is called.")] = "",
+    name: Annotated[str, Option(help="What the whole action is called.")] = "",
     on_unknown: Annotated[
         OnUnknown | None,
-        typer.Option(
+        Option(
             help="For a segment that no rule names: ask for a name (the default at a terminal), "
             "keep it as Unknown (the default elsewhere), or fail."
         ),
@@ -74,25 +74,24 @@ def observe(
     set_: Set = None,
     json: Json = False,
     script: Annotated[
-        bool, typer.Option("--script", help="Print the complex PAR as the thesis's Python script.")
+        bool, Option("--script", help="Print the complex PAR as the thesis's Python script.")
     ] = False,
     pars: Annotated[
-        bool, typer.Option("--pars", help="Print every UPAR and IPAR as well, as text to diff.")
+        bool, Option("--pars", help="Print every UPAR and IPAR as well, as text to diff.")
     ] = False,
     plot: Plot = None,
     actionary: Annotated[
         str | None,
-        typer.Option(
+        Option(
             metavar="PATH|URL",
             envvar="CAPAR_ACTIONARY",
             help="Keep the observation in this Actionary: a folder or a SPARQL server. "
             "Rules in that folder count too.",
-            show_default=False,
         ),
     ] = None,
     fit: Annotated[
         bool,
-        typer.Option(
+        Option(
             "--fit",
             help="Fit a human body first: its head and feet can be touched, and hands without a "
             "shape get its surface.",
@@ -102,35 +101,23 @@ def observe(
     new: New = False,
     live: Annotated[
         bool,
-        typer.Option(
-            "--live",
-            help="Print segments while they happen: of CAPTURE, replayed, or of --device.",
+        Option(
+            "--live", help="Print segments while they happen: of CAPTURE, replayed, or of --device."
         ),
     ] = False,
     device: Annotated[
-        str,
-        typer.Option(
-            help="With --live: a tracker's address; `capar devices` lists examples.",
-            show_default=False,
-        ),
+        str, Option(help="With --live: a tracker's address; `capar devices` lists examples.")
     ] = "",
     rig: Annotated[
-        str,
-        typer.Option(
-            help="With --device: a capture of the same bodies, such as an earlier take.",
-            show_default=False,
-        ),
+        str, Option(help="With --device: a capture of the same bodies, such as an earlier take.")
     ] = "",
     calibration: Annotated[
         Path | None,
-        typer.Option(
-            help="With --live: what `capar inspect CAPTURE --calibration --json` printed.",
-            show_default=False,
-        ),
+        Option(help="With --live: what `capar inspect CAPTURE --calibration --json` printed."),
     ] = None,
     lead_in: Annotated[
         float,
-        typer.Option(
+        Option(
             min=0.0,
             metavar="SECONDS",
             help="With --live: calibrate by so many first seconds; 0 by the whole CAPTURE.",
@@ -138,29 +125,27 @@ def observe(
     ] = 0.0,
     speed: Annotated[
         float,
-        typer.Option(
+        Option(
             min=0.0,
             help="With --live CAPTURE: how many times as fast to replay it; 0 as fast as it goes.",
         ),
     ] = 1.0,
     websocket: Annotated[
         int | None,
-        typer.Option(
+        Option(
             metavar="PORT",
             min=0,
             max=65535,
             help="With --live: also send events as JSON to programs that connect to "
             "ws://127.0.0.1:PORT; 0 takes a free port and says which. Needs capar[live].",
-            show_default=False,
         ),
     ] = None,
     lsl_markers: Annotated[
         str,
-        typer.Option(
+        Option(
             metavar="NAME",
             help="With --live: also send events as JSON in a Lab Streaming Layer stream of that "
             "name and of type Markers. Needs capar[live].",
-            show_default=False,
         ),
     ] = "",
 ) -> None:
@@ -240,7 +225,7 @@ def _check_output(forms: dict[str, bool], plot: Path | None) -> None:
 
 def demo(
     plot: Annotated[
-        Path, typer.Option(help="Where to draw the picture: a .png, .svg or .pdf file.")
+        Path, Option(help="Where to draw the picture: a .png, .svg or .pdf file.")
     ] = Path("drink_from_mug.png"),
 ) -> None:
     """Observe the shipped capture of drinking, and draw it."""
@@ -356,7 +341,7 @@ def _ask_for_names(observation: "Observation", folder: Path) -> bool:
     for features, segment in unknown.items():
         typer.echo(unknown_note(segment), err=True)
         while True:
-            answer = typer.prompt(question, default="", show_default=False, err=True).strip()
+            answer = typer.prompt(question, default="", err=True).strip()
             if not answer or ACTION_NAME.fullmatch(answer):
                 break
             typer.echo("A name reads like MoveObjTo: letters and digits, capital first.", err=True)

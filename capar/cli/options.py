@@ -7,6 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
+
+from capar.model.errors import FileError
 
 if TYPE_CHECKING:
     from capar_rules.engine.profiles import Profile
@@ -14,102 +17,80 @@ if TYPE_CHECKING:
     from kb.store.stores import Store
 
 Capture = Annotated[
-    str,
-    typer.Argument(help="A capture's folder or capture.toml; FOLDER:TAKE for one of its takes."),
+    str, Argument(help="A capture's folder or capture.toml; FOLDER:TAKE for one of its takes.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Json = Annotated[bool, Option("--json", help="Print JSON.")]
 ProfileName = Annotated[
-    str, typer.Option("--profile", help="The rules: extended, or thesis to the letter.")
+    str, Option("--profile", help="The rules: extended, or thesis to the letter.")
 ]
 Rules = Annotated[
     Path | None,
-    typer.Option(
+    Option(
         "--rules",
         metavar="FOLDER",
         help="Your project's rule files; else CAPAR_RULES, else ./rules. "
         "Rules in the Actionary's own folder count too.",
-        show_default=False,
     ),
 ]
 Place = Annotated[
     str | None,
-    typer.Option(
+    Option(
         "--actionary",
         metavar="PATH|URL",
         help="The Actionary: a folder or a SPARQL server. Else CAPAR_ACTIONARY, else ./actionary.",
-        show_default=False,
     ),
 ]
 Beside = Annotated[
     str | None,
-    typer.Option(
+    Option(
         "--actionary",
         metavar="PATH|URL",
         help="An Actionary whose rules count too: those in its folder rules. Else CAPAR_ACTIONARY.",
-        show_default=False,
     ),
 ]
 """The Actionary of a command that opens none and only takes its rules."""
 
-Wait = Annotated[
-    float, typer.Option(metavar="SECONDS", help="How long to wait for another writer.")
-]
-New = Annotated[
-    bool, typer.Option("--new", help="Make the Actionary if it is not there, without asking.")
-]
+Wait = Annotated[float, Option(metavar="SECONDS", help="How long to wait for another writer.")]
+New = Annotated[bool, Option("--new", help="Make the Actionary if it is not there, unasked.")]
 Corrected = Annotated[
-    bool,
-    typer.Option("--corrected", help="Use what persons say of segments (`capar correct`)."),
+    bool, Option("--corrected", help="Use what persons say of segments (`capar correct`).")
 ]
 Steady = Annotated[
     bool | None,
-    typer.Option(
+    Option(
         "--steady/--no-steady",
-        help="Smooth flicker of contacts and motions by the fewest changes, or not; "
-        "the profile thesis does not by default.",
-        show_default=False,
+        help="Smooth flicker of contacts and motions, or not (as the profile thesis).",
     ),
 ]
 Set = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         "--set",
         metavar="KEY=VALUE",
         help="Replace a value of the calibration for this run, in metres and seconds, such as "
         "touch_m:right_hand,bowl=0.12. May be repeated.",
-        show_default=False,
     ),
 ]
-Plot = Annotated[
-    Path | None,
-    typer.Option(help="Draw it to a .png, .svg or .pdf file.", show_default=False),
-]
+Plot = Annotated[Path | None, Option(help="Draw it to a .png, .svg or .pdf file.")]
 NewBundle = Annotated[
-    Path | None,
-    typer.Option("--output", "-o", help="A new folder for the capture bundle.", show_default=False),
+    Path | None, Option("--output", "-o", help="A new folder for the capture bundle.")
 ]
 OutputFile = Annotated[
-    Path | None,
-    typer.Option("--output", "-o", "--out", help="A file, instead of standard output."),
+    Path | None, Option("--output", "-o", "--out", help="A file, instead of standard output.")
 ]
 Assume = Annotated[
     Path | None,
-    typer.Option(
+    Option(
         metavar="FILE",
         help="A TOML file with what the recording does not say: from_s, to_s; [performer] "
         "kind, stature_m, place, heading_deg, floor_m; [mirrored] left_hand = 'OBJECT'; "
         "[hand.SIDE] fingers, palm = [X, Y, Z]; [assumed_size] OBJECT = [X, Y].",
-        show_default=False,
     ),
 ]
 
 
 def rule_base(
-    profile: str,
-    rules: Path | None,
-    actionary: str | None = None,
-    *,
-    steady: bool | None = None,
+    profile: str, rules: Path | None, actionary: str | None = None, *, steady: bool | None = None
 ) -> "Profile":
     """A profile with the rules that people wrote, each checked by its text first.
 
@@ -125,8 +106,7 @@ def rule_base(
     from capar_rules.authoring.user_rules import user_rules
     from capar_rules.lint.checking import admitted_profile
 
-    added = user_rules(rules, actionary=actionary)
-    return admitted_profile(profile, added=added, steady=steady)
+    return admitted_profile(profile, added=user_rules(rules, actionary=actionary), steady=steady)
 
 
 def rule_words(rules: Path | None, actionary: str | None = None) -> "tuple[PrimitiveWords, ...]":
@@ -160,13 +140,11 @@ def require_actionary(actionary: str | None, *, observed: bool = False) -> None:
     Raises:
         FileError: Nothing is there.
     """
-    from capar.model.errors import FileError
     from capar_rules.authoring.user_rules import FOLDER
-    from kb.store.stores import DATA_FOLDER, is_address
 
     place = opened(actionary)
-    there = [DATA_FOLDER] if observed else [DATA_FOLDER, FOLDER]
-    if not is_address(place) and not any((Path(place) / each).is_dir() for each in there):
+    rules_only = not observed and (Path(place) / FOLDER).is_dir()
+    if not rules_only and not has_actionary(place, named=place):
         raise FileError(
             place, "is no Actionary.",
             f"`capar observe CAPTURE --actionary {place}` makes one; --rules FOLDER keeps rules "
@@ -189,7 +167,6 @@ def confirm_new(actionary: str | None, *, new: bool) -> None:
     """
     from difflib import get_close_matches
 
-    from capar.model.errors import FileError
     from kb.store.stores import DATA_FOLDER, is_address
 
     place = opened(actionary)
@@ -221,22 +198,18 @@ def open_words(where: str | None, *, corrected: bool = False) -> "Iterator[Store
         where: The Actionary's place; None for the usual one.
         corrected: Whether persons' claims stand in place of what they correct.
     """
-    from kb.store.stores import is_address, open_store, place
+    from kb.corrections import corrected as corrected_copy
+    from kb.store.stores import is_address, open_store
     from kb.store.updates import check_current
 
-    target = place(where)
+    target = opened(where)
     # The folder of an Actionary may hold rules before it holds anything that was observed.
-    if where is None and not is_address(target) and not has_actionary(target, named=None):
+    if where is None and not has_actionary(target, named=target):
         yield None
         return
     store = open_store(target, read_only=not is_address(target))
     try:
         check_current(store)
-        if corrected:
-            from kb.corrections import corrected as corrected_copy
-
-            yield corrected_copy(store)
-        else:
-            yield store
+        yield corrected_copy(store) if corrected else store
     finally:
         store.close()

@@ -1,8 +1,9 @@
 """How commands print JSON and tables, write files whole or not at all, and report failures."""
 
+import dataclasses
 import errno
 import os
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from shutil import copymode
@@ -13,21 +14,21 @@ import typer
 from capar.model.errors import FileError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from rich.console import Console
 
 
+PERMISSION = "Get permission to read or write it, or name another path."
+SPACE = "Free some space, or name a path on another disk."
 REMEDIES = {
-    errno.EACCES: "Get permission to read or write it, or name another path.",
-    errno.EPERM: "Get permission to read or write it, or name another path.",
+    errno.EACCES: PERMISSION,
+    errno.EPERM: PERMISSION,
     errno.EROFS: "Name a path on a writable file system.",
     errno.ENOENT: "Name an existing path; a new file needs an existing folder.",
     errno.ENOTDIR: "The part before the last / must be a folder.",
     errno.EISDIR: "Name a file, not a folder.",
     errno.EEXIST: "Name another path.",
-    errno.ENOSPC: "Free some space, or name a path on another disk.",
-    errno.EDQUOT: "Free some space, or name a path on another disk.",
+    errno.ENOSPC: SPACE,
+    errno.EDQUOT: SPACE,
     errno.ENAMETOOLONG: "Choose a shorter name.",
     errno.ELOOP: "The symbolic links there form a loop; name their target directly.",
 }
@@ -40,55 +41,35 @@ PIPE_COLUMNS = 10_000
 
 def error_message(error: OSError) -> str:
     """What went wrong, where, and what would have been right."""
-    names = [os.fsdecode(each) for each in (error.filename, error.filename2) if _named(each)]
+    files = (error.filename, error.filename2)
+    names = [os.fsdecode(each) for each in files if isinstance(each, str | bytes | os.PathLike)]
     where = f"{' -> '.join(names)}: " if names else ""
     what = error.strerror or str(error) or type(error).__name__
     remedy = REMEDIES.get(error.errno or 0, "Name another file or folder.")
     return f"{where}cannot be used: {what}. {remedy}"
 
 
-def _named(name: object) -> bool:
-    return isinstance(name, str | bytes | os.PathLike)
-
-
 def print_json(value: Any, *, sort_keys: bool = False) -> None:
     """A value as JSON on standard output: dataclasses by their fields, the unknown as text."""
     import json
 
-    text = json.dumps(_plain(value), ensure_ascii=False, indent=2, sort_keys=sort_keys, default=str)
+    text = json.dumps(value, ensure_ascii=False, indent=2, sort_keys=sort_keys, default=_plain)
     typer.echo(text)
 
 
-def print_names(names: Iterable[str], *, json: bool) -> None:
-    """Names, a line each."""
-    if json:
-        print_json(list(names))
-        return
-    for name in names:
-        typer.echo(name)
-
-
-def print_fields(title: str, fields: Mapping[str, Collection[str]], *, json: bool) -> None:
-    """Fields with their values, a line each; a field without any is said to be empty."""
-    if json:
-        print_json({"name": title, **{name: list(values) for name, values in fields.items()}})
-        return
-    typer.echo(title)
-    for name, values in fields.items():
-        typer.echo(f"  {name}: {', '.join(values) or '(empty: nothing is recorded)'}")
-
-
 def _plain(value: Any) -> Any:
-    import dataclasses
-
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        names = [each.name for each in dataclasses.fields(value)]
-        return {name: _plain(getattr(value, name)) for name in names}
-    if isinstance(value, dict):
-        return {str(key): _plain(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
-    return value
+        return {each.name: getattr(value, each.name) for each in dataclasses.fields(value)}
+    return str(value)
+
+
+def answer(value: Any, lines: Iterable[object], *, json: bool, sort_keys: bool = False) -> None:
+    """A value as JSON, or lines of text for people, which are made only if they are printed."""
+    if json:
+        print_json(value, sort_keys=sort_keys)
+        return
+    for line in lines:
+        typer.echo(line)
 
 
 def console() -> "Console":
@@ -104,9 +85,32 @@ def emit(text: str, output: Path | None) -> None:
     """Write text to a file, or to standard output where none is named."""
     if output is None:
         typer.echo(text, nl=False)
-        return
-    with written(output) as draft:
-        draft.write_text(text, encoding="utf-8")
+    else:
+        with written(output) as draft:
+            draft.write_text(text, encoding="utf-8")
+
+
+def save(path: Path, content: "str | bytes | Callable[[Path], object]", did: str = "wrote") -> None:
+    """Write a file whole or not at all, by its content or by what writes it, and report it."""
+    with written(path) as draft:
+        if callable(content):
+            content(draft)
+        else:
+            draft.write_bytes(content if isinstance(content, bytes) else content.encode())
+    typer.echo(f"{did} {path}", err=True)
+
+
+def check_picture(path: Path | None) -> None:
+    """Check that a picture could be drawn there, before anything is computed for it.
+
+    Raises:
+        FileError: It has no format of pictures.
+        OSError: It cannot be written.
+    """
+    if path is not None:
+        from capar.views.picture import SUFFIXES
+
+        check_writable(path, suffixes=SUFFIXES)
 
 
 def check_new_folder(folder: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
+from typer import Argument, Option
 
 from capar.cli.options import (
     Assume,
@@ -21,7 +22,7 @@ from capar.cli.options import (
     require_actionary,
     rule_words,
 )
-from capar.cli.output import check_new_folder, print_json
+from capar.cli.output import answer, check_new_folder, print_json
 from capar.model.errors import CaparError
 
 if TYPE_CHECKING:
@@ -30,11 +31,10 @@ if TYPE_CHECKING:
     from capar.body.human import Human
     from capar.model.capture import Capture as CaptureData
     from capar.pipelines.instantiation import Asked
-    from capar.pipelines.preparation import Performed, Prepared, World
-    from capar.pipelines.recordings import Recording
-    from capar.pipelines.round_trips import JointTrip, Trip
-    from capar.pipelines.spoken_requests import Performance
-    from capar.regeneration.efforts import Effort, EffortReport
+    from capar.pipelines.preparation import Prepared, World
+    from capar.pipelines.recordings import Performed, Recording
+    from capar.pipelines.round_trips import Trip
+    from capar.regeneration.efforts import Effort
     from capar.regeneration.forces import ForceKind
     from capar.regeneration.hand_overs import JointMotion
     from capar.regeneration.motion import Motion
@@ -50,141 +50,126 @@ SAME = "same"
 TRIP_COLUMNS = "scene  same PAR  contacts  relations  gates  where not"
 
 
-class _Manner(NamedTuple):
-    """How an action is performed."""
+class _Task(NamedTuple):
+    """What the options of `capar regenerate` say."""
 
+    what: str | None
+    """The capture or action."""
+
+    agents: Sequence[str]
+    parts: Mapping[str, str]
+    scene: Path | None
+    folder: Path | None
     kind: "Kind"
-    force: "ForceKind"
     style_of: str | None
     duration_s: float | None
     hand: str | None
     effort: "Effort | None"
-
-
-class _Where(NamedTuple):
-    """Where recordings and words are: one capture, or an Actionary and captures; and the rules."""
-
-    capture: str | None
+    force: "ForceKind"
+    step: bool
     recordings: Path | None
+    assume: Path | None
     actionary: str | None
     rules: Path | None
-
-
-class _Output(NamedTuple):
-    """Where the performance goes: a new folder, and JSON rather than text."""
-
-    folder: Path | None
     json: bool
 
-    def finish(self, answer: Callable[[], Any], tell: Callable[[], None]) -> None:
+    @property
+    def agent(self) -> str:
+        """The body that performs what one was recorded to do."""
+        if len(self.agents) > 1:
+            raise CaparError(
+                f"{len(self.agents)} bodies, and one performer was recorded; name one with --agent"
+            )
+        return self.agents[0]
+
+    def finish(self, value: Any, lines: Iterable[object]) -> None:
         """Print the answer for machines, or text for people and where the files are."""
-        if self.json:
-            print_json(answer())
-            return
-        tell()
-        if self.folder:
+        answer(value, lines, json=self.json)
+        if self.folder and not self.json:
             typer.echo(f"wrote {self.folder}", err=True)
 
 
 def regenerate(
     capture: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             metavar="[CAPTURE|ACTION]",
             help="A capture's folder or capture.toml; FOLDER:TAKE for one of its takes. Or an "
             "action that the Actionary holds, as a whole or as a step of a recording. With --say "
             "it may be left out: the Actionary's recordings are then searched.",
-            show_default=False,
         ),
     ] = None,
     say: Annotated[
         str | None,
-        typer.Option(
-            metavar="TEXT",
-            help="What to do, such as 'pick up the mug and put it on the shelf'.",
-            show_default=False,
-        ),
+        Option(metavar="TEXT", help="What to do: 'pick up the mug and put it on the shelf'."),
     ] = None,
     agent: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             help="Who performs: man, woman, child, or same (the one recorded, the default); for "
             "an ACTION or with --object also an agent of the Actionary whose kind is one of these. "
-            "With several performers once for all, once for each in their order, or NAME=child.",
-            show_default=False,
+            "With several performers once for all, once for each in their order, or NAME=child."
         ),
     ] = None,
     things: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             "--object",
             metavar="PART=THING",
             help="The object of the scene that takes the part of a recorded one; may be repeated. "
             "The other parts are taken by kind, or asked for where several objects fit.",
-            show_default=False,
         ),
     ] = None,
     scene: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             help="A TOML file that changes the scene: [stance] place, heading_deg, floor_m; "
             "[object.NAME] size, position, turn_deg, raise_m. Or a CAPTURE whose scene it is "
-            "done in, as always with --say.",
-            show_default=False,
+            "done in, as always with --say."
         ),
     ] = None,
     output: NewBundle = None,
     style: Annotated[
         str,
-        typer.Option(
+        Option(
             help="What of the recorded motion is kept: path (shape and timing), frame (likewise, "
             "scaled with the path), vel (timing), even (nothing: least jerk)."
         ),
     ] = "path",
     style_of: Annotated[
-        str | None,
-        typer.Option(help="Another capture of the same, whose style is taken.", show_default=False),
+        str | None, Option(help="Another capture of the same, whose style is taken.")
     ] = None,
-    duration: Annotated[
-        float | None, typer.Option(help="How long it takes [s].", show_default=False, min=0.1)
-    ] = None,
-    hand: Annotated[
-        str | None,
-        typer.Option(help="Which hand does it: right or left.", show_default=False),
-    ] = None,
+    duration: Annotated[float | None, Option(help="How long it takes [s].", min=0.1)] = None,
+    hand: Annotated[str | None, Option(help="Which hand does it: right or left.")] = None,
     effort: Annotated[
         str | None,
-        typer.Option(
+        Option(
             metavar="NAME=VALUE,...",
             help="In which manner, from -1 to 1 each, 0 being as recorded: time (sustained to "
             "sudden), weight (light to strong), space (indirect to direct), flow (free to bound); "
             "or by pole, as in sudden=0.6,light=0.3.",
-            show_default=False,
         ),
     ] = None,
     force: Annotated[
         str,
-        typer.Option(
+        Option(
             help="What of a blow or a throw is kept: similar (the force, in proportion to arm and "
             "speed) or same (the object's motion; the hand strikes as fast as that takes)."
         ),
     ] = "similar",
     step: Annotated[
         bool | None,
-        typer.Option(
+        Option(
             "--step/--no-step",
             help="Where it is out of reach, step to where it can be done; the default for an "
             "ACTION or with --object. Not with --say.",
-            show_default=False,
         ),
     ] = None,
     recordings: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             metavar="FOLDER",
-            help="With --say or an ACTION: the folder that holds the Actionary's captures; else "
-            "this one.",
-            show_default=False,
+            help="With --say or an ACTION: the folder of the Actionary's captures; else this one.",
         ),
     ] = None,
     assume: Assume = None,
@@ -205,37 +190,31 @@ def regenerate(
 
     if output:
         check_new_folder(output)
-    agents, out = agent or [SAME], _Output(output, json)
-    how = _Manner(
-        style_kind(style), force_kind(force), style_of, duration, hand,
-        read_effort(effort) if effort is not None else None,
+    in_scene = bool(scene and _is_capture(scene))
+    instance = bool(things) or in_scene or (capture is not None and _is_action(capture))
+    task = _Task(
+        capture, agent or [SAME], dict(map(_part, things or [])), scene, output, style_kind(style),
+        style_of, duration, hand, read_effort(effort) if effort is not None else None,
+        force_kind(force), instance if step is None else step, recordings, assume, actionary,
+        rules, json,
     )  # fmt: skip
     if say is not None:
         for option, given in (("--style-of", style_of), ("--object", things), ("--step", step)):
             if given:
                 raise CaparError(f"{option} is of one recorded action; leave it out, or --say")
-        where = _Where(capture, recordings, actionary, rules)
-        _perform_request(say, _one_body(agents), where, how, scene, out)
-        return
-    if capture is None:
+        _perform_request(task, say)
+    elif capture is None:
         raise CaparError("name a CAPTURE, or what to do: --say 'touch the mug' --scene CAPTURE")
-    if things or _is_action(capture) or (scene and _is_capture(scene)):
-        where = _Where(None, recordings, actionary, rules)
-        parts = dict(map(_part, things or []))
-        _perform_instance(
-            capture, _one_body(agents), where, how, parts, scene, assume, out,
-            step=step is not False,
-        )  # fmt: skip
-        return
-    trial = trial_of(capture)
-    if trial.others:
+    elif instance:
+        _perform_instance(task, capture)
+    elif (trial := trial_of(capture)).others:
         _refuse_for_several(
             {"--style-of": style_of, "--duration": duration, "--hand": hand, "--assume": assume,
              "--effort": effort, "--step": step, "--force": "" if force == "similar" else force}
         )  # fmt: skip
-        _perform_jointly(trial, agents, scene, style, out)
-        return
-    _perform_alone(trial, _one_body(agents), how, scene, assume, out, step=bool(step))
+        _perform_jointly(task, trial)
+    else:
+        _perform_alone(task, trial)
 
 
 def _refuse_for_several(options: Mapping[str, Any]) -> None:
@@ -246,15 +225,6 @@ def _refuse_for_several(options: Mapping[str, Any]) -> None:
             f"{given[0]} is of one performer, and this capture has several; leave it out, or cut "
             "the capture to one agent's sensors"
         )
-
-
-def _one_body(agents: Sequence[str]) -> str:
-    """The body that performs what one was recorded to do."""
-    if len(agents) > 1:
-        raise CaparError(
-            f"{len(agents)} bodies, and one performer was recorded; name one with --agent"
-        )
-    return agents[0]
 
 
 def _is_capture(place: str | Path) -> bool:
@@ -278,218 +248,149 @@ def _part(text: str) -> tuple[str, str]:
     return part, thing
 
 
-def _perform_alone(
-    trial: "CaptureData",
-    who: str,
-    how: _Manner,
-    scene: Path | None,
-    assume: Path | None,
-    out: _Output,
-    *,
-    step: bool,
-) -> None:
+def _perform_alone(task: _Task, trial: "CaptureData") -> None:
     """Perform what one performer was recorded to do."""
     from capar.pipelines.round_trips import body, observed_source
-    from capar.regeneration.captures import capture_of, read_completion, write_motion
     from capar.regeneration.scenes import read_scene
 
-    source = observed_source(trial, read_completion(assume) if assume else None)
-    where = read_scene(scene, source.scene) if scene else source.scene
-    stepped, motion, quality, report = _act(source, body(who, source), where, how, step=step)
-    if out.folder:
-        name = who if who != SAME else source.capture.agent.name
-        made = capture_of(motion, name=source.capture.name, agent=name)
-        if stepped:
-            _write_steps(stepped, out.folder / "1_steps", name)
-        last = out.folder / f"2_{source.capture.name}" if stepped else out.folder
-        write_motion(motion, made, last)
-
-    def answer() -> dict[str, Any]:
-        own = {**quality_answer(motion, quality), **_effort_answer(report)}
-        return {**own, **_steps_answer(stepped, own["passed"])}
-
-    def tell() -> None:
-        _print_steps(stepped)
-        if stepped:
-            typer.echo("the action itself:")
-        print_quality(motion, quality)
-        if report:
-            typer.echo(report)
-
-    out.finish(answer, tell)
+    source = observed_source(trial, task.assume)
+    where = read_scene(task.scene, source.scene) if task.scene else source.scene
+    stepped, done = _act(task, source, body(task.agent, source), where)
+    _write(task, [(source.capture.name, done)], stepped)
+    lines = [*_step_lines(stepped), *(["the action itself:"] if stepped else ()), *_lines(done)]
+    task.finish(_value(done) | _steps_value(stepped, passed=done.quality.passed), lines)
 
 
 def _act(
+    task: _Task,
     source: "Source",
     human: "Human",
     where: "Scene",
-    how: _Manner,
-    *,
-    step: bool,
-    contacts: bool = False,
-) -> "tuple[Approach | None, Motion, Quality, EffortReport | None]":
+    names: Mapping[str, str] | None = None,
+) -> "tuple[Approach | None, Performed]":
     """Perform an action from the given place, or, if steps may be taken, from where they lead.
 
     Args:
+        task: The manner, and whether steps may be taken.
         source: What was recorded.
         human: Who performs.
         where: The scene.
-        how: The manner.
-        step: Whether steps may be taken.
-        contacts: Whether contacts as the PARs assert them are a gate.
+        names: The scene's names of objects, where contacts as the PARs assert them are a gate.
 
     Raises:
         PlanError: It is out of reach, and no step helps.
     """
     from capar.pipelines.preparation import asserted
+    from capar.pipelines.recordings import Performed
     from capar.pipelines.round_trips import by_hand, observed_source
     from capar.regeneration.efforts import regenerate_in_manner
     from capar.regeneration.quality import Quality, contact_gate
     from capar.regeneration.stepping import approached
     from capar.regeneration.styles import borrowed_style, own_style
 
-    assertions = asserted(source) if contacts else None
-    source = by_hand(source, how.hand) if how.hand and not contacts else source
-    style = own_style(source, how.kind)
-    if how.style_of:
-        other = observed_source(how.style_of)
-        style = borrowed_style(source, by_hand(other, how.hand) if how.hand else other, how.kind)
-    style = replace(style, force=how.force)
+    assertions = asserted(source) if names is not None else None
+    source = by_hand(source, task.hand) if task.hand and names is None else source
+    style = own_style(source, task.kind)
+    if task.style_of:
+        other = observed_source(task.style_of)
+        style = borrowed_style(source, by_hand(other, task.hand) if task.hand else other, task.kind)
+    style = replace(style, force=task.force)
 
-    def act(there: "Scene") -> "tuple[tuple[Motion, EffortReport | None], Quality]":
+    def act(there: "Scene") -> "tuple[Performed, Quality]":
         motion, quality, report = regenerate_in_manner(
-            source, human, there, style, effort=how.effort, duration_s=how.duration_s
+            source, human, there, style, effort=task.effort, duration_s=task.duration_s
         )
         if assertions is not None:
             gate = contact_gate(motion, assertions)
             quality = Quality((*quality.gates, gate), quality.told)
-        return (motion, report), quality
+        return Performed(motion, quality, names or {}, report), quality
 
-    if step:
-        stepped, (motion, report), quality = approached(source, human, where, style, act)
-        return stepped, motion, quality, report
-    (motion, report), quality = act(where)
-    return None, motion, quality, report
-
-
-def _write_steps(stepped: "Approach", folder: Path, agent: str) -> None:
-    """Write the capture of steps as a bundle."""
-    from capar.regeneration.captures import capture_of_steps, write_steps
-
-    capture = capture_of_steps(stepped.steps, name="steps", agent=agent)
-    write_steps(stepped.steps, capture, folder)
+    if not task.step:
+        return None, act(where)[0]
+    stepped, done, _ = approached(source, human, where, style, act)
+    return stepped, done
 
 
-def _perform_instance(
-    what: str,
-    agent: str,
-    where: _Where,
-    how: _Manner,
-    parts: dict[str, str],
-    scene: Path | None,
-    assume: Path | None,
-    out: _Output,
-    *,
-    step: bool,
-) -> None:
-    """Perform an action or a capture's on objects of a scene, and tell how good it is."""
-    from capar.pipelines.instantiation import Knowledge, instantiate
-    from capar.pipelines.preparation import Performed, prepare, procedures_of
-    from capar.pipelines.preparation import opened as open_recording
+def _perform_instance(task: _Task, what: str) -> None:
+    """Perform an action or a capture's on objects of a scene, and say how good it is."""
+    from capar.pipelines.instantiation import instantiate
+    from capar.pipelines.preparation import prepare, procedures_of
     from capar.pipelines.round_trips import by_hand
 
-    with _words(where, needed=_is_action(what)) as words:
-        known = Knowledge(words.kinds_above, words.abilities)
-        recordings = _stored(what, where, words)
-        recording, source, notes = _recorded(what, recordings, list(parts), assume)
-        source = by_hand(source, how.hand) if how.hand else source
-        asked, world = _asked(what, agent, words, source, scene, parts, step=step)
-        instance = instantiate(asked, recording, source, known, _asker())
-        prepared = prepare(
-            instance, world, known.kinds, lambda: procedures_of(recordings, open_recording)
+    with _words(task, needed=_is_action(what)) as words:
+        recordings = _stored(words, task, needed=_is_action(what))
+        recording, source, notes = _recorded(task, what, recordings)
+        source = by_hand(source, task.hand) if task.hand else source
+        asked, world = _asked(task, what, words, source)
+        instance = instantiate(
+            asked, recording, source, words.kinds_above, words.abilities, _asker()
         )
+        prepared = prepare(instance, world, words.kinds_above, lambda: procedures_of(recordings))
     source, place, names = instance.placed(prepared.world.scene)
-    human = instance.asked.human
-    stepped, motion, quality, report = _act(source, human, place, how, step=step, contacts=True)
-    main = Performed(motion, quality, names, effort=report)
+    stepped, main = _act(task, source, instance.asked.human, place, names)
     stages = [(done.stage.way.recording.name, done) for done in prepared.done]
-    if out.folder:
-        _write_stages([*stages, (recording.name, main)], agent, out.folder, stepped)
+    _write(task, [*stages, (recording.name, main)], stepped)
     told = (*notes, *instance.notes)
-
-    def answer() -> dict[str, Any]:
-        bound = [asdict(binding) for binding in instance.bindings]
-        head = {"action": what, "recording": recording.name, "objects": bound}
-        own = _instance_answer(prepared, main, told)
-        return {**head, **own, **_steps_answer(stepped, own["passed"])}
-
-    def tell() -> None:
-        for note in told:
-            typer.echo(note)
-        _print_instance(prepared, main, stepped)
-
-    out.finish(answer, tell)
+    passed = main.quality.passed and all(done.quality.passed for done in prepared.done)
+    value = {
+        "action": what,
+        "recording": recording.name,
+        "objects": [asdict(binding) for binding in instance.bindings],
+        **_value(main, told),
+        "passed": passed,
+        "plan": _plan_value(prepared),
+        **_steps_value(stepped, passed=passed),
+    }
+    lines = [*told, *_plan_lines(prepared, stepped), *_step_lines(stepped)]
+    lines += ["the action itself:"] if prepared.done or stepped else []
+    task.finish(value, [*lines, *_lines(main)])
 
 
 @contextmanager
-def _words(where: _Where, *, needed: bool) -> "Iterator[Actionary]":
+def _words(task: _Task, *, needed: bool) -> "Iterator[Actionary]":
     """The Actionary; where none is there and none is needed, one that knows only the ontology."""
     from kb import Actionary
 
     if needed:
-        require_actionary(where.actionary, observed=True)
-    place = opened(where.actionary)
-    if needed or has_actionary(place, named=where.actionary):
-        with Actionary.open(place, read_only=True) as words:
-            yield words
-    else:
-        with Actionary.in_memory() as words:
-            yield words
+        require_actionary(task.actionary, observed=True)
+    place = opened(task.actionary)
+    there = needed or has_actionary(place, named=task.actionary)
+    with Actionary.open(place, read_only=True) if there else Actionary.in_memory() as words:
+        yield words
 
 
-def _stored(what: str, where: _Where, words: "Actionary") -> "tuple[Recording, ...]":
+def _stored(words: "Actionary", task: _Task, *, needed: bool) -> "tuple[Recording, ...]":
     """What can be performed: the Actionary's recordings whose captures are there."""
     from capar.pipelines.recordings import stored_recordings
 
-    known, lost = stored_recordings(words, where.recordings or Path())
-    for name in lost if _is_action(what) or where.recordings else ():
+    known, lost = stored_recordings(words, task.recordings or Path())
+    for name in lost if needed or task.recordings else ():
         typer.echo(f"capar: the capture of {name!r} is not in the folder of recordings", err=True)
     return known
 
 
 def _recorded(
-    what: str, known: "Sequence[Recording]", parts: Sequence[str], assume: Path | None
+    task: _Task, what: str, known: "Sequence[Recording]"
 ) -> "tuple[Recording, Source, tuple[str, ...]]":
     """The recording that is performed, and notes on its choice."""
     from capar.pipelines.instantiation import find_action
     from capar.pipelines.recordings import observed_recording
     from capar.pipelines.round_trips import observed_source
-    from capar.regeneration.captures import read_completion
 
-    completion = read_completion(assume) if assume else None
     if not _is_action(what):
-        source = observed_source(what, completion)
+        source = observed_source(what, task.assume)
         return observed_recording(source.observation, Path(what)), source, ()
-    found = find_action(what, known, parts)
-    notes = [f"{what}: performed as in recording {found.recording.name!r}"]
-    if found.others:
+    found, others = find_action(what, known, task.parts)
+    notes = [f"{what}: performed as in recording {found.name!r}"]
+    if others:
         notes.append(
-            f"{', '.join(found.others)} would do as well; the one with the stated parts is taken, "
+            f"{', '.join(others)} would do as well; the one with the stated parts is taken, "
             "then the one with the fewest steps, then the first by name"
         )
-    return found.recording, observed_source(found.recording.capture, completion), tuple(notes)
+    return found, observed_source(found.capture, task.assume), tuple(notes)
 
 
-def _asked(
-    what: str,
-    agent: str,
-    words: "Actionary",
-    source: "Source",
-    scene: Path | None,
-    parts: dict[str, str],
-    *,
-    step: bool,
-) -> "tuple[Asked, World]":
+def _asked(task: _Task, what: str, words: "Actionary", source: "Source") -> "tuple[Asked, World]":
     """What is asked for, and the world in which it is, as measured."""
     from capar.pipelines.instantiation import Asked
     from capar.pipelines.preparation import captured_world, measured_world
@@ -497,6 +398,7 @@ def _asked(
     from capar.regeneration.scenes import read_scene
     from capar.regeneration.stepping import FARTHEST_M
 
+    agent, scene = task.agent, task.scene
     who = source.capture.agent.name if agent == SAME else agent
     kinds = words.agent_profile(who)["kind"] if who in words.agents() else ()
     shape = next(iter(kinds), agent) if agent != SAME else agent
@@ -505,8 +407,8 @@ def _asked(
     if scene is not None and own:
         world = replace(world, scene=read_scene(scene, source.scene))
     named = tuple(dict.fromkeys((who, *kinds)))
-    steps_m = FARTHEST_M if step else 0.0
-    return Asked(what, named, body(shape, source), parts, world.scene, own, steps_m), world
+    steps_m, human = FARTHEST_M if task.step else 0.0, body(shape, source)
+    return Asked(what, named, human, task.parts, world.scene, own, steps_m), world
 
 
 def _asker() -> "Callable[[Role, tuple[str, ...]], str] | None":
@@ -516,257 +418,202 @@ def _asker() -> "Callable[[Role, tuple[str, ...]], str] | None":
         listed = ", ".join(fitting)
         while True:
             question = f"Which takes the part of {role.name!r} ({role.kind}): {listed}?"
-            answer = str(typer.prompt(question, err=True)).strip()
-            if answer in fitting:
-                return answer
-            typer.echo(f"{answer!r} does not fit; name one of {listed}.", err=True)
+            given = str(typer.prompt(question, err=True)).strip()
+            if given in fitting:
+                return given
+            typer.echo(f"{given!r} does not fit; name one of {listed}.", err=True)
 
     return ask if can_ask() else None
 
 
-def _write_stages(
-    made: "Sequence[tuple[str, Performed]]", agent: str, output: Path, stepped: "Approach | None"
+def _write(
+    task: _Task, made: "Sequence[tuple[str, Performed]]", stepped: "Approach | None" = None
 ) -> None:
-    """One bundle, or one in a numbered folder each, where something was prepared."""
-    from capar.regeneration.captures import capture_of, renamed, write_motion
+    """One bundle; where several were performed, one in a numbered folder each."""
+    from capar.regeneration.captures import (
+        capture_of,
+        capture_of_steps,
+        renamed,
+        write_motion,
+        write_steps,
+    )
 
+    folder, agent = task.folder, task.agent
     for number, (name, done) in enumerate(made, start=1):
-        source = done.motion.plan.source
-        who = agent if agent != SAME else source.capture.agent.name
+        if folder is None:
+            break
+        who = agent if agent != SAME else done.motion.plan.source.capture.agent.name
         bundle = renamed(capture_of(done.motion, name=name, agent=who), done.names)
-        alone = len(made) == 1 and stepped is None
         last = stepped is not None and number == len(made)
         if stepped is not None and last:
-            _write_steps(stepped, output / f"{number}_steps", who)
-        write_motion(done.motion, bundle, output if alone else output / f"{number + last}_{name}")
+            walked = capture_of_steps(stepped.steps, name="steps", agent=who)
+            write_steps(stepped.steps, walked, folder / f"{number}_steps")
+        alone = len(made) == 1 and stepped is None
+        write_motion(done.motion, bundle, folder if alone else folder / f"{number + last}_{name}")
 
 
-def _instance_answer(
-    prepared: "Prepared", main: "Performed", told: Sequence[str]
-) -> dict[str, Any]:
-    answer = {**quality_answer(main.motion, main.quality), **_effort_answer(main.effort)}
+def _plan_value(prepared: "Prepared") -> dict[str, Any]:
+    """What was planned and done before the action, for machines."""
     stages = [
         {
             "recording": done.stage.way.recording.name,
             "steps": [asdict(step) for step in done.stage.steps],
-            **quality_answer(done.motion, done.quality),
+            **quality_value(done.motion, done.quality),
         }
         for done in prepared.done
     ]
-    plan = {
+    return {
         "needed": prepared.wanted,
         "lacking": prepared.lacking,
         "impossible": prepared.tried,
         "stages": stages,
     }
-    passed = answer["passed"] and all(done.quality.passed for done in prepared.done)
-    return {**answer, "passed": passed, "plan": plan, "notes": [*told, *answer["notes"]]}
 
 
-def _print_instance(prepared: "Prepared", main: "Performed", stepped: "Approach | None") -> None:
+def _plan_lines(prepared: "Prepared", stepped: "Approach | None") -> "Iterator[str]":
     from capar.pipelines.preparation import told
 
     if not prepared.done and stepped is None:
-        typer.echo("plan: nothing has to be prepared")
-    for condition in prepared.lacking:
-        typer.echo(f"plan: {told(condition)} does not hold yet")
-    for why in prepared.tried:
-        typer.echo(f"plan: not possible is {why}")
+        yield "plan: nothing has to be prepared"
+    yield from (f"plan: {told(condition)} does not hold yet" for condition in prepared.lacking)
+    yield from (f"plan: not possible is {why}" for why in prepared.tried)
     steps = [(done, step) for done in prepared.done for step in done.stage.steps]
     for number, (done, step) in enumerate(steps, start=1):
         where = ""
         if step.place:
             where = f" to ({step.place[0]:.2f}, {step.place[1]:.2f}) m on {step.support!r}"
         name = done.stage.way.recording.name
-        typer.echo(
-            f"{number:3}. {step.hand} hand: {step.action} {step.thing}{where} (as in {name})"
-        )
+        yield f"{number:3}. {step.hand} hand: {step.action} {step.thing}{where} (as in {name})"
     for done in prepared.done:
         part, thing = done.stage.way.part, done.stage.steps[0].thing
         as_part = f", {thing!r} in the part of {part!r}" if part != thing else ""
-        typer.echo(f"prepared as in {done.stage.way.recording.name}{as_part}:")
-        print_quality(done.motion, done.quality)
-    _print_steps(stepped)
-    if prepared.done or stepped:
-        typer.echo("the action itself:")
-    print_quality(main.motion, main.quality)
-    if main.effort:
-        typer.echo(main.effort)
+        yield f"prepared as in {done.stage.way.recording.name}{as_part}:"
+        yield from quality_lines(done.motion, done.quality)
 
 
-def _perform_request(
-    text: str, agent: str, where: _Where, how: _Manner, scene: Path | None, out: _Output
-) -> None:
-    """Perform what a text asks for, one action after the other, and tell how good each is."""
+def _perform_request(task: _Task, text: str) -> None:
+    """Perform what a text asks for, one action after the other, and say how good each is."""
     from capar.body.anthropometry import measures_of, ready_made
     from capar.body.human import Human
     from capar.pipelines.language import vocabulary
+    from capar.pipelines.recordings import observed_actions
     from capar.pipelines.spoken_requests import (
+        Performance,
         after,
         choices,
-        observed_actions,
         perform,
         read_requests,
     )
     from capar.pipelines.trials import trial_of
     from capar.regeneration.roles import captured_scene
 
-    stage = str(scene) if scene else where.capture
+    stage = task.scene or task.what
     if stage is None:
         raise CaparError("name the scene that it is done in: --scene CAPTURE")
     trial = trial_of(stage)
     place = captured_scene(trial)
-    human = Human.of(measures_of(trial.agent) if agent == SAME else ready_made(agent))
-    words = vocabulary(rule_words(where.rules, where.actionary))
-    known = _recordings(where)
+    human = Human.of(measures_of(trial.agent) if task.agent == SAME else ready_made(task.agent))
+    words = vocabulary(rule_words(task.rules, task.actionary))
+    known = _recordings(task)
     requests = read_requests(text, words, place, observed_actions(known))
     made: list[Performance] = []
     for choice in choices(requests, known):
         made.append(
             perform(
-                choice, place, human, kind=how.kind, duration_s=how.duration_s, hand=how.hand,
-                effort=how.effort,
+                choice, place, human, kind=task.kind, duration_s=task.duration_s, hand=task.hand,
+                effort=task.effort,
             )
         )  # fmt: skip
         place = after(made[-1], place)
-    if out.folder:
-        _write_performances(made, agent, out.folder)
-
-    def tell() -> None:
-        for each in made:
-            for note in each.notes:
-                typer.echo(note)
-            print_quality(each.motion, each.quality)
-            if each.effort:
-                typer.echo(each.effort)
-
-    out.finish(lambda: {"performed": list(map(_performance_answer, made))}, tell)
+    _write(task, [(each.choice.recording.name, each) for each in made])
+    values = [
+        {
+            "recording": each.choice.recording.name,
+            "asked": [str(request) for request in each.choice.requests],
+            **_value(each, each.notes),
+        }
+        for each in made
+    ]
+    task.finish({"performed": values}, [line for m in made for line in (*m.notes, *_lines(m))])
 
 
-def _recordings(where: _Where) -> "tuple[Recording, ...]":
+def _recordings(task: _Task) -> "tuple[Recording, ...]":
     """The capture that is named, or the Actionary's recordings whose captures are there."""
     from capar.pipelines.observation import observe
-    from capar.pipelines.recordings import observed_recording, stored_recordings
-    from kb import Actionary
+    from capar.pipelines.recordings import observed_recording
 
-    if where.capture is not None:
-        return (observed_recording(observe(where.capture), Path(where.capture)),)
-    require_actionary(where.actionary, observed=True)
-    with Actionary.open(opened(where.actionary), read_only=True) as words:
-        known, lost = stored_recordings(words, where.recordings or Path())
-    for name in lost:
-        typer.echo(f"capar: the capture of {name!r} is not in the folder of recordings", err=True)
-    return known
+    if task.what is not None:
+        return (observed_recording(observe(task.what), Path(task.what)),)
+    with _words(task, needed=True) as words:
+        return _stored(words, task, needed=True)
 
 
-def _write_performances(made: "list[Performance]", agent: str, output: Path) -> None:
-    """One bundle, or for several actions one in a numbered folder each."""
-    from capar.regeneration.captures import capture_of, renamed, write_motion
-
-    for number, each in enumerate(made, start=1):
-        source = each.motion.plan.source
-        name = agent if agent != SAME else source.capture.agent.name
-        made_of = capture_of(each.motion, name=each.choice.recording.name, agent=name)
-        folder = output if len(made) == 1 else output / f"{number}_{each.choice.recording.name}"
-        write_motion(each.motion, renamed(made_of, each.names), folder)
-
-
-def _performance_answer(each: "Performance") -> dict[str, Any]:
-    answer = quality_answer(each.motion, each.quality)
-    return {
-        "recording": each.choice.recording.name,
-        "asked": [" ".join((r.said, *r.objects)) for r in each.choice.requests],
-        **answer,
-        **_effort_answer(each.effort),
-        "notes": [*each.notes, *answer["notes"]],
-    }
-
-
-def _perform_jointly(
-    capture: "CaptureData", agents: Sequence[str], scene: Path | None, style: str, out: _Output
-) -> None:
-    """Perform a capture of several performers with several bodies, and tell every gate."""
+def _perform_jointly(task: _Task, capture: "CaptureData") -> None:
+    """Perform a capture of several performers with several bodies, with every gate."""
     from capar.pipelines.round_trips import bodies, observed_joint_source
     from capar.regeneration.captures import joint_capture_of, write_joint_motion
     from capar.regeneration.hand_overs import regenerate_together
     from capar.regeneration.scenes import read_scenes
-    from capar.regeneration.styles import style_kind
 
     source = observed_joint_source(capture)
     scenes = {name: one.scene for name, one in source.sources.items()}
-    humans = bodies(agents, source)
-    where = read_scenes(scene, scenes) if scene else scenes
-    made = regenerate_together(source, humans, where, style_kind(style))
-    if out.folder:
+    humans = bodies(task.agents, source)
+    where = read_scenes(task.scene, scenes) if task.scene else scenes
+    made = regenerate_together(source, humans, where, task.kind)
+    if task.folder:
         again = joint_capture_of(made, name=source.capture.name)
-        write_joint_motion(made, again, out.folder)
-
-    def answer() -> dict[str, Any]:
-        performers = {
-            name: quality_answer(motion, made.qualities[name])
-            for name, motion in made.motions.items()
-        }
-        return {"passed": made.passed, "performers": performers, "gates": _gate_rows(made.gates)}
-
-    out.finish(answer, lambda: _print_joint_quality(made))
+        write_joint_motion(made, again, task.folder)
+    performers = {
+        name: quality_value(motion, made.qualities[name]) for name, motion in made.motions.items()
+    }
+    value = {"passed": made.passed, "performers": performers, "gates": _gates_value(made.gates)}
+    task.finish(value, _joint_lines(made))
 
 
-def _print_joint_quality(made: "JointMotion") -> None:
-    """Print the gates of every body and between them, and the notes, each once."""
+def _joint_lines(made: "JointMotion") -> "Iterator[str]":
+    """The gates of every body and between them, and the notes, each once."""
     notes: dict[str, None] = {}
     for name, motion in made.motions.items():
-        typer.echo(f"{name}:")
-        _print_gates(made.qualities[name].gates, motion.plan.source.times)
-        _print_measures(made.qualities[name])
+        yield f"{name}:"
+        yield from quality_lines(motion, made.qualities[name], notes=())
         notes |= dict.fromkeys(
             note if note in notes or not note.startswith("the ") else f"{name}: {note}"
             for note in motion.plan.notes
         )
-    typer.echo("together:")
-    _print_gates(made.gates, motion.plan.source.times)
-    for note in notes:
-        typer.echo(f"note: {note}")
+    yield "together:"
+    yield from _gate_lines(made.gates, motion.plan.source.times)
+    yield from (f"note: {note}" for note in notes)
 
 
-def quality_answer(motion: "Motion", quality: "Quality") -> dict[str, Any]:
+def quality_value(motion: "Motion", quality: "Quality") -> dict[str, Any]:
     """Gates and notes of a motion, for machines."""
     return {
         "passed": quality.passed,
-        "gates": _gate_rows(quality.gates),
+        "gates": _gates_value(quality.gates),
         "told": quality.told,
         "notes": motion.plan.notes,
     }
 
 
-def _gate_rows(gates: "Sequence[Gate]") -> list[dict[str, Any]]:
+def _gates_value(gates: "Sequence[Gate]") -> list[dict[str, Any]]:
+    keys = ("name", "limit", "unit", "frame", "bodies")
     return [
-        {
-            "name": gate.name,
-            "value": round(gate.value, 4),
-            "limit": gate.limit,
-            "unit": gate.unit,
-            "passed": bool(gate.passed),
-            "frame": gate.frame,
-            "bodies": gate.bodies,
-        }
+        {**{key: getattr(gate, key) for key in keys},
+         "value": round(gate.value, 4), "passed": bool(gate.passed)}
         for gate in gates
-    ]
+    ]  # fmt: skip
 
 
-def _effort_answer(report: "EffortReport | None") -> dict[str, Any]:
-    """The effort of a motion, for machines; nothing where none was asked for."""
-    if report is None:
-        return {}
-    return {
-        "effort": {
-            "asked": report.asked.values,
-            "performed": report.performed.values,
-            "why": report.why,
-        }
-    }
+def _value(done: "Performed", notes: Sequence[str] = ()) -> dict[str, Any]:
+    """A performance for machines, with its effort where one was asked for."""
+    value, effort = quality_value(done.motion, done.quality), done.effort
+    if effort is not None:
+        levels = {"asked": effort.asked.values, "performed": effort.performed.values}
+        value["effort"] = {**levels, "why": effort.why}
+    return {**value, "notes": [*notes, *value["notes"]]}
 
 
-def _steps_answer(stepped: "Approach | None", passed: bool) -> dict[str, Any]:
+def _steps_value(stepped: "Approach | None", *, passed: bool) -> dict[str, Any]:
     """Steps for machines; nothing where none were needed."""
     if stepped is None:
         return {}
@@ -778,55 +625,61 @@ def _steps_answer(stepped: "Approach | None", passed: bool) -> dict[str, Any]:
             "left_m": stepped.aside_m,
             "strides": [{"foot": s.side, "by_m": s.by} for s in stepped.steps.strides],
             "impossible": stepped.tried,
-            "gates": _gate_rows(stepped.quality.gates),
+            "gates": _gates_value(stepped.quality.gates),
         },
     }
 
 
-def print_quality(motion: "Motion", quality: "Quality") -> None:
-    """Print every gate with its limit and where it was worst, and the notes."""
-    _print_gates(quality.gates, motion.plan.source.times)
-    _print_measures(quality)
-    for note in motion.plan.notes:
-        typer.echo(f"note: {note}")
+def _lines(done: "Performed") -> "Iterator[object]":
+    """A performance for people."""
+    yield from quality_lines(done.motion, done.quality)
+    if done.effort:
+        yield done.effort
 
 
-def _print_gates(gates: "Sequence[Gate]", times: "Sequence[float] | np.ndarray") -> None:
-    typer.echo("gate               value     limit   unit        passed  worst at")
-    for gate in gates:
-        sign = ">=" if gate.at_least else "<="
-        at = f"{times[gate.frame]:.2f} s" if gate.frame >= 0 else ""
-        typer.echo(
-            f"{gate.name:16} {gate.value:8.3f}  {sign} {gate.limit:6.2f}  {gate.unit:10}  "
-            f"{'yes' if gate.passed else 'NO':6}  {at} {gate.bodies}".rstrip()
-        )
-
-
-def _print_measures(quality: "Quality") -> None:
+def quality_lines(
+    motion: "Motion", quality: "Quality", notes: Iterable[str] | None = None
+) -> "Iterator[str]":
+    """Every gate with its limit and where it was worst, and the notes."""
+    yield from _gate_lines(quality.gates, motion.plan.source.times)
     for measured in quality.told:
         value = f"{measured.value:.1f} {measured.unit}"
-        typer.echo(f"{measured.name}: {value} ({measured.bodies}), not demanded")
+        yield f"{measured.name}: {value} ({measured.bodies}), not demanded"
+    yield from (f"note: {note}" for note in (motion.plan.notes if notes is None else notes))
 
 
-def _print_steps(stepped: "Approach | None") -> None:
-    """Print the steps that were needed, if any, and their gates."""
+def _gate_lines(
+    gates: "Sequence[Gate]", times: "Sequence[float] | np.ndarray"
+) -> "tuple[str, ...]":
+    from capar.views.tables import aligned
+
+    rows = [("gate", "value", "", "limit", "unit", "passed", "worst at", "")]
+    for gate in gates:
+        at = f"{times[gate.frame]:.2f} s" if gate.frame >= 0 else ""
+        sign, passed = ">=" if gate.at_least else "<=", "yes" if gate.passed else "NO"
+        figures = (f"{gate.value:.3f}", sign, f"{gate.limit:.2f}")
+        rows.append((gate.name, *figures, gate.unit, passed, at, gate.bodies))
+    return aligned(rows, right={1, 3})
+
+
+def _step_lines(stepped: "Approach | None") -> "Iterator[str]":
+    """The steps that were needed, if any, and their gates."""
     if stepped is None:
         return
-    typer.echo(f"plan: from the given place {stepped.why}")
-    for why in stepped.tried:
-        typer.echo(f"plan: not possible is {why}")
+    yield f"plan: from the given place {stepped.why}"
+    yield from (f"plan: not possible is {why}" for why in stepped.tried)
     for number, stride in enumerate(stepped.steps.strides, start=1):
         x, y = stride.by
-        typer.echo(f"{number:3}. {stride.side} foot: Step by ({x:+.2f}, {y:+.2f}) m")
-    typer.echo("the steps:")
-    _print_gates(stepped.quality.gates, stepped.steps.times)
+        yield f"{number:3}. {stride.side} foot: Step by ({x:+.2f}, {y:+.2f}) m"
+    yield "the steps:"
+    yield from _gate_lines(stepped.quality.gates, stepped.steps.times)
 
 
 def roundtrip(
     capture: Capture,
     agents: Annotated[
         str,
-        typer.Option(
+        Option(
             "--agents",
             "--agent",
             help="Who performs, separated by commas: man, woman, child, same. With several "
@@ -834,39 +687,31 @@ def roundtrip(
         ),
     ] = "man,woman,child",
     scenes: Annotated[
-        int, typer.Option(min=0, help="How many scenes to draw; 0 performs in the recorded one.")
+        int, Option(min=0, help="How many scenes to draw; 0 performs in the recorded one.")
     ] = 0,
-    seed: Annotated[int, typer.Option(min=0, help="Of the drawn scenes.")] = 0,
+    seed: Annotated[int, Option(min=0, help="Of the drawn scenes.")] = 0,
     assume: Assume = None,
     json: Json = False,
 ) -> None:
     """Observe, perform on other bodies, observe that, and compare."""
     from capar.pipelines.round_trips import (
-        bodies,
-        body,
         joint_round_trips,
         observed_joint_source,
         observed_source,
         round_trips,
     )
     from capar.pipelines.trials import trial_of
-    from capar.regeneration.captures import read_completion
 
     trial = trial_of(capture)
     names = tuple(each.strip() for each in agents.split(","))
-    trips: Iterable[Trip | JointTrip]
     if trial.others:
         _refuse_for_several({"--assume": assume})
         joint = observed_joint_source(trial)
-        for cast in names:
-            bodies(cast.split("+"), joint)  # a misspelt one is refused before anything is computed
         trips, width = joint_round_trips(joint, names, scenes=scenes, seed=seed), 12
     else:
-        source = observed_source(trial, read_completion(assume) if assume else None)
-        for name in names:
-            body(name, source)
+        source = observed_source(trial, assume)
         trips, width = round_trips(source, names, scenes=scenes, seed=seed), 6
-    made = []
+    made: list[Trip] = []
     if not json:
         typer.echo(f"{'agents' if trial.others else 'agent':{width}} {TRIP_COLUMNS}")
     for trip in trips:
@@ -874,32 +719,20 @@ def roundtrip(
         if not json:
             typer.echo(_trip_row(trip, width))
     if json:
-        print_json(made)
+        print_json([each.row() for each in made])
         return
     done = [trip for trip in made if not trip.refused]
     passed = sum(trip.passed for trip in done)
     typer.echo(f"{len(made)} asked, {len(done)} in reach, {passed} passed")
 
 
-def _trip_row(trip: "Trip | JointTrip", width: int) -> str:
-    from capar.pipelines.round_trips import JointTrip
-
-    who = trip.agents if isinstance(trip, JointTrip) else trip.agent
+def _trip_row(trip: "Trip", width: int) -> str:
     if trip.refused:
-        return f"{who:{width}} {trip.scene:5}  not performed: {trip.refused}"
-    if isinstance(trip, JointTrip):
-        failed = list(trip.failed)
-    else:
-        assert trip.quality is not None
-        failed = [
-            f"{gate.name} {gate.value:.2f} {gate.unit} {gate.bodies}".strip()
-            for gate in trip.quality.gates
-            if not gate.passed
-        ]
-    cells = (trip.same_par, trip.same_contacts, trip.same_relations, not failed)
+        return f"{trip.agent:{width}} {trip.scene:5}  not performed: {trip.refused}"
+    cells = (trip.same_par, trip.same_contacts, trip.same_relations, not trip.failed)
     words = ["yes" if each else "NO" for each in cells]
-    where = "; ".join([*failed, *([trip.names] if trip.names else [])])
+    where = "; ".join([*trip.failed, *([trip.names] if trip.names else [])])
     return (
-        f"{who:{width}} {trip.scene:5}  {words[0]:8}  {words[1]:8}  {words[2]:9}  {words[3]:5}  "
-        f"{where}"
+        f"{trip.agent:{width}} {trip.scene:5}  {words[0]:8}  {words[1]:8}  {words[2]:9}  "
+        f"{words[3]:5}  {where}"
     ).rstrip()

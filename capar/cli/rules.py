@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
 from capar.cli.options import (
     Json,
@@ -28,13 +29,13 @@ if TYPE_CHECKING:
 
 rules = typer.Typer(no_args_is_help=True, help="Write, check, add and remove primitives as rules.")
 
-File = Annotated[Path, typer.Argument(help="A rule file.")]
+File = Annotated[Path, Argument(help="A rule file.")]
 Reclassify = Annotated[
-    bool, typer.Option("--reclassify", help="Rename the stored segments that this changes.")
+    bool, Option("--reclassify", help="Rename the stored segments that this changes.")
 ]
 Captures = Annotated[
     list[Path] | None,
-    typer.Option(help="With --reclassify: a folder that holds captures; else this one."),
+    Option(help="With --reclassify: a folder that holds captures; else this one."),
 ]
 
 
@@ -72,7 +73,7 @@ def list_rules(
 
 @rules.command()
 def show(
-    name: Annotated[str, typer.Argument(help="A primitive.")],
+    name: Annotated[str, Argument(help="A primitive.")],
     profile: ProfileName = "extended",
     rules: Rules = None,
     actionary: Place = None,
@@ -86,22 +87,21 @@ def show(
 
 @rules.command()
 def new(
-    name: Annotated[str, typer.Argument(help="What the primitive is called, such as Lift.")],
+    name: Annotated[str, Argument(help="What the primitive is called, such as Lift.")],
     source: Annotated[
         str | None,
-        typer.Option(
+        Option(
             "--from",
             help="A segment whose features it has, as CAPTURE/END_EFFECTOR/INDEX. "
             "CAPTURE may also be the name of an observation in the Actionary.",
         ),
     ] = None,
     features: Annotated[
-        str | None,
-        typer.Option(help="START,END,CHANGE,FORCE in bits, such as 100,101,10,00."),
+        str | None, Option(help="START,END,CHANGE,FORCE in bits, such as 100,101,10,00.")
     ] = None,
-    definition: Annotated[str, typer.Option(help="What it is, in words.")] = "",
-    general: Annotated[str, typer.Option(help="The primitive that it specialises.")] = "",
-    verb: Annotated[str, typer.Option(help="The verb for it.")] = "",
+    definition: Annotated[str, Option(help="What it is, in words.")] = "",
+    general: Annotated[str, Option(help="The primitive that it specialises.")] = "",
+    verb: Annotated[str, Option(help="The verb for it.")] = "",
     output: OutputFile = None,
     profile: ProfileName = "extended",
     rules: Rules = None,
@@ -158,10 +158,7 @@ def check(
 
 @rules.command()
 def test(
-    file: File,
-    profile: ProfileName = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
+    file: File, profile: ProfileName = "extended", rules: Rules = None, actionary: Place = None
 ) -> None:
     """Run the examples in a rule file: what it must match, and must not."""
     from capar_rules.authoring.user_primitives import try_rule
@@ -184,14 +181,14 @@ def add(
     file: File,
     over: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             help="A primitive that it precedes where both fit; may be repeated. all stands for "
             "each that names a segment with it, or may. It is written into the file."
         ),
     ] = None,
     kind_of: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             help="A primitive that it is a kind of; may be repeated. It is written into the file."
         ),
     ] = None,
@@ -241,7 +238,7 @@ def add(
 
 @rules.command()
 def remove(
-    name: Annotated[str, typer.Argument(help="A primitive of yours.")],
+    name: Annotated[str, Argument(help="A primitive of yours.")],
     reclassify: Reclassify = False,
     captures: Captures = None,
     profile: ProfileName = "extended",
@@ -291,7 +288,7 @@ def diff(
     file: File,
     on: Annotated[
         list[str] | None,
-        typer.Option(help="A capture to compare on, instead of the Actionary; may be repeated."),
+        Option(help="A capture to compare on, instead of the Actionary; may be repeated."),
     ] = None,
     profile: ProfileName = "extended",
     rules: Rules = None,
@@ -344,7 +341,7 @@ def audit(
 
 @rules.command("words")
 def list_words(
-    name: Annotated[str | None, typer.Argument(help="One word, such as carried_off.")] = None,
+    name: Annotated[str | None, Argument(help="One word, such as carried_off.")] = None,
     profile: ProfileName = "extended",
     rules: Rules = None,
     actionary: Place = None,

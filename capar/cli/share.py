@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from typer import Argument, Option
 
 from capar.cli.options import Json, New, Place, Wait, confirm_new, opened, require_actionary
 
@@ -14,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def import_(
-    file: Annotated[str, typer.Argument(help="The file, or - for standard input.")],
+    file: Annotated[str, Argument(help="The file, or - for standard input.")],
     format_: Annotated[
         str | None,
-        typer.Option("--format", help="turtle, trig, nquads or jsonld; else by the file's name."),
+        Option("--format", help="turtle, trig, nquads or jsonld; else by the file's name."),
     ] = None,
     wait: Wait = 0.0,
     new: New = False,
@@ -53,7 +54,7 @@ def _bytes(file: str) -> bytes:
 def export(
     file: Annotated[
         Path | None,
-        typer.Argument(
+        Argument(
             metavar="[FILE|CAPTURE|OBSERVATION]",
             help="Where to; standard output if left out. Of a plan: the capture, or the stored "
             "observation, whose action is written.",
@@ -61,7 +62,7 @@ def export(
     ] = None,
     format_: Annotated[
         str | None,
-        typer.Option(
+        Option(
             "--format",
             help="turtle, trig, nquads, jsonld or rdfxml; else by the file's name. Of a plan: "
             "pddl (domain and problem), bt (BehaviorTree.CPP 4) or bml (BML 1.0).",
@@ -69,17 +70,14 @@ def export(
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option(
-            help="Of a plan: a file, or for pddl a new folder; else standard output.",
-            show_default=False,
-        ),
+        Option(help="Of a plan: a file, or for pddl a new folder; else standard output."),
     ] = None,
     observation: Annotated[
-        str | None, typer.Option(help="Only this observation, with all that it mentions.")
+        str | None, Option(help="Only this observation, with all that it mentions.")
     ] = None,
     soma: Annotated[
         bool,
-        typer.Option(
+        Option(
             "--soma", help="Write the observation as an episode in terms of SOMA and DUL alone."
         ),
     ] = False,
@@ -185,7 +183,7 @@ def _plan_source(name: str, actionary: str | None) -> "PlanSource":
 def backup(
     file: Annotated[
         Path | None,
-        typer.Argument(help="Where to, as N-Quads; else beside the Actionary, by date and time."),
+        Argument(help="Where to, as N-Quads; else beside the Actionary, by date and time."),
     ] = None,
     json: Json = False,
     actionary: Place = None,

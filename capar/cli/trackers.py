@@ -8,6 +8,7 @@ from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer import Argument, Option
 
 from capar.cli.options import Json
 from capar.cli.output import print_json
@@ -16,17 +17,15 @@ if TYPE_CHECKING:
     from extractors.devices.tracker import LiveTracker
 
 Seconds = Annotated[
-    float, typer.Option("--seconds", min=0.0, help="How long; 0 until it is interrupted.")
+    float, Option("--seconds", min=0.0, help="How long; 0 until it is interrupted.")
 ]
 
 
 def devices(
     address: Annotated[
-        str, typer.Argument(help="A device address; without one, drivers and ports are listed.")
+        str, Argument(help="A device address; without one, drivers and ports are listed.")
     ] = "",
-    seconds: Annotated[
-        float, typer.Option("--seconds", min=0.1, help="How long to watch it.")
-    ] = 2.0,
+    seconds: Annotated[float, Option("--seconds", min=0.1, help="How long to watch it.")] = 2.0,
     json: Json = False,
 ) -> None:
     """List trackers and serial ports, or print what one sends."""
@@ -96,9 +95,9 @@ def _show(report: dict[str, Any]) -> None:
 
 def record(
     source: Annotated[
-        str, typer.Argument(help="A device address, or the file of a recording that was cut off.")
+        str, Argument(help="A device address, or the file of a recording that was cut off.")
     ],
-    output: Annotated[Path, typer.Argument(help="The folder of the capture bundle to make.")],
+    output: Annotated[Path, Argument(help="The folder of the capture bundle to make.")],
     seconds: Seconds = 0.0,
     json: Json = False,
 ) -> None:
@@ -158,23 +157,23 @@ def _record(address: str, path: Path, seconds: float) -> None:
 
 
 def simulate(
-    kind: Annotated[str, typer.Argument(help="flock, motionstar, fastrak or vrpn.")],
+    kind: Annotated[str, Argument(help="flock, motionstar, fastrak or vrpn.")],
     capture: Annotated[
-        str, typer.Option("--capture", help="A capture to play in a loop; else a made-up motion.")
+        str, Option("--capture", help="A capture to play in a loop; else a made-up motion.")
     ] = "",
     sensors: Annotated[
-        int, typer.Option("--sensors", min=1, max=13, help="Sensors of the made-up motion.")
+        int, Option("--sensors", min=1, max=13, help="Sensors of the made-up motion.")
     ] = 4,
     erc: Annotated[
-        bool, typer.Option("--erc", help="Flock: with an extended-range controller as unit 1.")
+        bool, Option("--erc", help="Flock: with an extended-range controller as unit 1.")
     ] = False,
     lost: Annotated[
-        float, typer.Option("--lost", min=0.0, max=1.0, help="Share of bytes or packets lost.")
+        float, Option("--lost", min=0.0, max=1.0, help="Share of bytes or packets lost.")
     ] = 0.0,
     garbled: Annotated[
-        float, typer.Option("--garbled", min=0.0, max=1.0, help="Share of bytes garbled.")
+        float, Option("--garbled", min=0.0, max=1.0, help="Share of bytes garbled.")
     ] = 0.0,
-    port: Annotated[int, typer.Option("--port", help="TCP or UDP port; 0 takes a free one.")] = 0,
+    port: Annotated[int, Option("--port", help="TCP or UDP port; 0 takes a free one.")] = 0,
     seconds: Seconds = 0.0,
     json: Json = False,
 ) -> None:

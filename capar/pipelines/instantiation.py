@@ -1,6 +1,6 @@
 """A recorded action bound to the objects of a scene and a body: UPAR to IPAR (thesis 4.1.2)."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,8 +8,7 @@ import numpy as np
 from capar.body.human import Human
 from capar.body.scenes import Thing
 from capar.model.errors import UnknownNameError
-from capar.model.par import ComplexPar, Step
-from capar.pipelines.recordings import Recording
+from capar.pipelines.recordings import Recording, observed_actions
 from capar.regeneration.roles import (
     Ask,
     Binding,
@@ -31,80 +30,60 @@ from kb.lookup.agents import Ability
 Abilities = Callable[[str], tuple[Ability, ...]]
 """What is declared or observed of an agent or a kind, those of more general kinds included."""
 
-
-@dataclass(frozen=True)
-class Applied:
-    """An action that is to be performed: by whom, on what, in which steps."""
-
-    action: str
-    par: ComplexPar
-    steps: tuple[Step, ...]
-    general: Mapping[str, frozenset[str]]
-    """The more general actions above each step's."""
-
-    agent: tuple[str, ...]
-    """Who performs: the name, and the kind if that is another."""
-
-    kinds: Mapping[str, str]
-    """What takes the part of each recorded object, by its kind."""
-
-
-def check_applicable(applied: Applied, abilities: Abilities) -> tuple[str, ...]:
-    """Check that what is declared does not rule the action out (thesis 4.6.1.4).
-
-    What an agent or a kind was declared able to do is all that it is able to do, beside what it
-    was observed to do. Of whom nothing is declared, nothing is ruled out, which is returned as a
-    note. An ability to do a more general action, or the whole one, holds for its steps.
-
-    Raises:
-        PlanError: Somebody or something is not able to; the message says what would declare it.
-    """
-    notes = []
-    doing = [step.action for step in applied.steps]
-    able = _declared(applied.agent, abilities)
-    if able is None:
-        notes.append(f"of {applied.agent[0]!r} no ability is declared, so none is ruled out")
-    else:
-        _check(applied, applied.agent[0], "agent", doing, able)
-    for part, kind in applied.kinds.items():
-        undergone = [step.action for step in applied.steps if part in step.objects]
-        able = _declared((kind,), abilities)
-        if undergone and able is not None:
-            _check(applied, kind, "object", undergone, able)
-    return tuple(notes)
-
-
-def _declared(whose: tuple[str, ...], abilities: Abilities) -> frozenset[str] | None:
-    """What they can do, if anything of it was declared."""
-    known = [one for name in whose for one in abilities(name)]
-    if not any(one.evidence == "declared" for one in known):
-        return None
-    return frozenset(one.action for one in known)
-
-
-def _check(
-    applied: Applied, who: str, command: str, actions: Iterable[str], able: frozenset[str]
-) -> None:
-    if able.intersection({applied.action, applied.par.name}):
-        return
-    lacking = [
-        action
-        for action in dict.fromkeys(actions)
-        if not able.intersection({action, *applied.general.get(action, ())})
-    ]
-    if lacking:
-        raise PlanError(
-            f"capable({who}, {lacking[0]}) does not hold: {who!r} is declared able to do "
-            f"{', '.join(sorted(able))}, and {applied.action!r} takes {', '.join(lacking)}; "
-            f"`capar {command} can {who} {' '.join(lacking)}` would declare it"
-        )
-
-
 BEYOND = 0.9
 """No palm is further from where a body stands, as a share of its stature: arm and trunk [1]."""
 
 BESIDE_M = 0.2
 """So far from where it stands another place is tried [m]."""
+
+
+def check_applicable(
+    action: str,
+    recording: Recording,
+    agent: Sequence[str],
+    kinds: Mapping[str, str],
+    abilities: Abilities,
+) -> tuple[str, ...]:
+    """Check that what is declared does not rule an action out (thesis 4.6.1.4).
+
+    What an agent or a kind was declared able to do is all that it is able to do, beside what it
+    was observed to do. Of whom nothing is declared, nothing is ruled out, which is returned as a
+    note. An ability to do a more general action, or the whole one, holds for its steps.
+
+    Args:
+        action: What is to be performed.
+        recording: Where its steps are recorded.
+        agent: Who performs: the name, and the kind if that is another.
+        kinds: What takes the part of each recorded object, by its kind.
+        abilities: What is known of agents and kinds.
+
+    Raises:
+        PlanError: Somebody or something is not able to; the message says what would declare it.
+    """
+    notes = []
+    for part, whose in (("", agent), *((part, (kind,)) for part, kind in kinds.items())):
+        steps = [s.action for s in recording.steps if not part or part in s.objects]
+        known = [one for name in whose for one in abilities(name)]
+        able = {one.action for one in known}
+        if not any(one.evidence == "declared" for one in known):
+            if not part:
+                notes.append(f"of {whose[0]!r} no ability is declared, so none is ruled out")
+            continue
+        general = recording.general
+        lacking = [
+            step
+            for step in dict.fromkeys(steps)
+            if not able.intersection({step, action, recording.par.name, *general.get(step, ())})
+        ]
+        if lacking:
+            who = whose[0]
+            raise PlanError(
+                f"capable({who}, {lacking[0]}) does not hold: {who!r} is declared able to do "
+                f"{', '.join(sorted(able))}, and {action!r} takes {', '.join(lacking)}; "
+                f"`capar {'object' if part else 'agent'} can {who} {' '.join(lacking)}` would "
+                "declare it"
+            )
+    return tuple(notes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +111,6 @@ class Instance:
     """An action whose objects are all bound, before anything moves."""
 
     asked: Asked
-    recording: Recording
     source: Source
     """What was recorded, of what takes part in it."""
 
@@ -163,39 +141,37 @@ class Instance:
         return made, where, own_names(self.source, scene, parts)
 
 
-@dataclass(frozen=True)
-class Knowledge:
-    """What is known of kinds and abilities."""
-
-    kinds: Kinds
-    abilities: Abilities
-
-
 def instantiate(
-    asked: Asked, recording: Recording, source: Source, known: Knowledge, ask: Ask | None = None
+    asked: Asked,
+    recording: Recording,
+    source: Source,
+    kinds: Kinds,
+    abilities: Abilities,
+    ask: Ask | None = None,
 ) -> Instance:
-    """Bind every part of a recorded action, and check that it is applicable.
+    """Bind the objects of a recorded action to those of a scene, and check that it is applicable.
 
     Raises:
-        UnknownNameError: A part or an object that was stated does not exist.
-        PlanError: A part is open, or the action is not applicable; the message says what would
-            make it possible.
+        UnknownNameError: A stated part or object does not exist.
+        AmbiguousError: Several objects fit a part, and there is nobody to ask.
+        PlanError: Nothing fits, or a condition does not hold; the message says what would make it
+            possible.
     """
     scene = asked.scene
     roles = roles_of(source)
-    bindings = bind(roles, scene, asked.stated, known.kinds, ask, own=asked.own)
+    bindings = bind(roles, scene, asked.stated, kinds, ask, own=asked.own)
     parts = {binding.role: binding.thing for binding in bindings}
-    kinds = {role: kind_of(scene.thing(name)) for role, name in parts.items()}
-    applied = Applied(
-        asked.action, recording.par, recording.steps, recording.general, asked.agent, kinds
-    )
-    notes = check_applicable(applied, known.abilities)
+    own = {role: kind_of(scene.thing(name)) for role, name in parts.items()}
+    notes = check_applicable(asked.action, recording, asked.agent, own, abilities)
     check_movable(source, scene, parts)
     for name in {hold.thing for hold in source.holds if hold.thing in parts}:
         _check_near(scene.thing(parts[name]), scene, asked)
-    told = tuple(_told(binding) for binding in bindings if binding.role != binding.thing)
-    source = with_only(source, parts)
-    return Instance(asked, recording, source, roles, bindings, (*told, *notes))
+    told = [
+        f"{binding.thing!r} has the part of {binding.role!r}, {binding.reason}"
+        for binding in bindings
+        if binding.role != binding.thing
+    ]
+    return Instance(asked, with_only(source, parts), roles, bindings, (*told, *notes))
 
 
 def _check_near(thing: Thing, scene: Scene, asked: Asked) -> None:
@@ -215,44 +191,23 @@ def _check_near(thing: Thing, scene: Scene, asked: Asked) -> None:
         )
 
 
-def _told(binding: Binding) -> str:
-    return f"{binding.thing!r} has the part of {binding.role!r}, {binding.reason}"
-
-
-@dataclass(frozen=True)
-class KnownAction:
-    """An action, the recording that holds it, and the others that do."""
-
-    name: str
-    recording: Recording
-    others: tuple[str, ...]
-    whole: bool
-    """Whether it is the recording as a whole, and no step of it."""
-
-
 def find_action(
-    name: str, recordings: Sequence[Recording], roles: Iterable[str] = ()
-) -> KnownAction:
-    """The recording that holds an action: as a whole, else as a step or a more special one.
+    name: str, recordings: Sequence[Recording], roles: Collection[str] = ()
+) -> tuple[Recording, tuple[str, ...]]:
+    """The recording that holds an action, as a whole or else as a step or a more special one.
 
     Of several, those with objects of the stated names count first, then the one with the fewest
     steps of all hands, then the first by name.
 
+    Returns:
+        It, and the names of the others that hold the action.
+
     Raises:
         UnknownNameError: No recording holds it.
     """
-    wanted = set(roles)
     whole = [one for one in recordings if name.lower() in {one.name.lower(), one.par.name.lower()}]
     found = whole or [one for one in recordings if any(one.fits(s, name) for s in one.steps)]
     if not found:
-        raise UnknownNameError("recorded action", name, _names(recordings))
-    found.sort(key=lambda one: (len(wanted - set(one.par.objects)), len(one.steps), one.name))
-    others = tuple(one.name for one in found[1:])
-    return KnownAction(name, found[0], others, bool(whole))
-
-
-def _names(recordings: Sequence[Recording]) -> set[str]:
-    """Every action that can be performed: recordings, their steps, and what these are cases of."""
-    steps = {step.action for one in recordings for step in one.steps}
-    general = {name for one in recordings for step in steps for name in one.general.get(step, ())}
-    return steps | general | {one.par.name for one in recordings}
+        raise UnknownNameError("recorded action", name, observed_actions(recordings))
+    found.sort(key=lambda one: (len({*roles} - {*one.par.objects}), len(one.steps), one.name))
+    return found[0], tuple(one.name for one in found[1:])

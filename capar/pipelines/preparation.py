@@ -1,8 +1,7 @@
 """Preparation: what an action needs and its scene lacks, planned over recorded steps."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,17 +15,14 @@ from capar.model.capture import Capture, TagType
 from capar.model.errors import RuleError
 from capar.model.facts import Touching as Touch
 from capar.model.observation import Observation
-from capar.model.par import Upar
 from capar.pipelines.instantiation import Instance
 from capar.pipelines.observation import observe
-from capar.pipelines.recordings import Recording
+from capar.pipelines.recordings import Performed, Recording
 from capar.pipelines.round_trips import by_hand, observed_source
 from capar.pipelines.trials import trial_of
 from capar.regeneration.captures import OTHER, Completion, completed, scene_after
 from capar.regeneration.collisions import Surroundings
-from capar.regeneration.efforts import EffortReport
 from capar.regeneration.goals import put_down_poses
-from capar.regeneration.motion import Motion
 from capar.regeneration.planning import is_possible
 from capar.regeneration.quality import (
     HEAD,
@@ -57,9 +53,6 @@ from capar_rules.engine.solver import Answer, Term, best, rule_file, text_of
 MARGIN_S = 0.3
 """So long a contact is kept before a step that ends it, or after one that makes it [s]."""
 
-Open = Callable[[Recording], Source]
-"""Observes a recording, so that it can be performed."""
-
 
 @dataclass(frozen=True, eq=False)
 class Procedure:
@@ -73,11 +66,6 @@ class Procedure:
 
     steps: tuple[PlanStep, ...]
 
-    @cached_property
-    def last(self) -> int:
-        """The recording's last frame."""
-        return len(self.source.times) - 1
-
     def relations(self, number: int) -> dict[str, tuple[str, str]]:
         """The bits of a step before and after it: of ``touch``, and of ``stand`` if it has any."""
         features = self.steps[number].ipar.core.constraint.features
@@ -85,15 +73,12 @@ class Procedure:
         found = {"touch": (rows[0][0], rows[1][0])}
         return found | ({"stand": (rows[0][count], rows[1][count])} if count > 1 else {})
 
-    def moves(self, number: int) -> bool:
-        """Whether a step moves the object."""
-        return self.steps[number].moves
-
-    def frame(self, number: int) -> int:
-        """The frame at which a step begins; of one past the last, the recording's last frame."""
-        if number == len(self.steps):
-            return self.last
-        return round(self.steps[number].step.begin * self.last)
+    def stands(self, start: str, end: str) -> bool:
+        """Whether a step that moves the object has such bits of ``stand``."""
+        return any(
+            step.moves and self.relations(number).get("stand") == (start, end)
+            for number, step in enumerate(self.steps)
+        )
 
     def part_of(self, first: int, last: int, side: str) -> Source:
         """Some steps of it, one after the other, with a hand.
@@ -102,49 +87,45 @@ class Procedure:
             PlanError: What is cut out does not determine a performance.
         """
         source, margin = self.source, round(MARGIN_S * self.source.rate_hz)
+        final = len(source.times) - 1
+        starts = [*(round(step.step.begin * final) for step in self.steps), final]
         lead = margin if first and self.relations(first)["touch"] == ("1", "0") else 0
         tail = margin if self.relations(last)["touch"] == ("0", "1") else 0
-        begin = self.frame(first) - lead if first else 0
-        ends = max(begin, 0), min(self.frame(last + 1) + tail, self.last)
-        if ends != (0, self.last):
-            source = _cut(source, *(float(source.capture.times[frame]) for frame in ends))
+        begin = max(starts[first] - lead, 0) if first else 0
+        end = min(starts[last + 1] + tail, final)
+        if (begin, end) != (0, final):
+            times = source.capture.times
+            source = _cut(source, float(times[begin]), float(times[end]))
         return by_hand(source, side) if any(h.side != side for h in source.holds) else source
 
 
-def procedures_of(recordings: Iterable[Recording], open_source: Open) -> tuple[Procedure, ...]:
-    """The recordings among some in which one hand handles one object and nothing else is done."""
+def procedures_of(
+    recordings: Iterable[Recording], open_source: Callable[[Recording], Source] | None = None
+) -> tuple[Procedure, ...]:
+    """The recordings among some in which one hand handles one object and nothing else is done.
+
+    Args:
+        recordings: Those that may be used.
+        open_source: Observes one, so that it can be performed; by default from its capture.
+    """
     found = []
     for recording in recordings:
         acting = {s.ee for s in recording.steps if s.ee.endswith("_hand") and s.objects}
-        if len(acting) == 1 and len({step.objects[0] for step in recording.steps}) == 1:
-            found += _way(recording, open_source)
+        if len(acting) != 1 or len({step.objects[0] for step in recording.steps}) != 1:
+            continue
+        try:
+            opened = open_source(recording) if open_source else observed_source(recording.capture)
+            plan = steps_of(opened.observation)
+        except (PlanError, PlanExportError):
+            continue
+        apart = opened.leanings or opened.meetings or opened.releases or opened.throws
+        if apart or not opened.holds:
+            continue
+        hold = opened.holds[0]
+        steps = tuple(s for s in plan.links[opened.hands[hold.side].sensor] if s.ipar.objects)
+        if {name for step in steps for name in step.ipar.objects} <= set(opened.scene.things):
+            found.append(Procedure(recording, opened, hold.side, hold.thing, steps))
     return tuple(found)
-
-
-def _way(recording: Recording, open_source: Open) -> list[Procedure]:
-    try:
-        source = open_source(recording)
-        plan = steps_of(source.observation)
-    except (PlanError, PlanExportError):
-        return []
-    alone = source.releases or source.throws
-    if source.leanings or source.meetings or alone or not source.holds:
-        return []
-    side = source.holds[0].side
-    steps = tuple(step for step in plan.links[source.hands[side].sensor] if step.ipar.objects)
-    things = {name for step in steps for name in step.ipar.objects}
-    if not things <= set(source.scene.things):
-        return []
-    return [Procedure(recording, source, side, source.holds[0].thing, steps)]
-
-
-def opened(recording: Recording) -> Source:
-    """A recording, ready to be performed.
-
-    Raises:
-        PlanError: The capture does not determine a performance.
-    """
-    return observed_source(recording.capture)
 
 
 def steps_of(observation: Observation) -> PlanSource:
@@ -154,8 +135,7 @@ def steps_of(observation: Observation) -> PlanSource:
         PlanExportError: It has no steps.
     """
     par = observation.complex_par
-    upars: tuple[Upar, ...] = observation.upars
-    return plan_source(par, observation.ipars, upars, {}, name=par.name)
+    return plan_source(par, observation.ipars, observation.upars, {}, name=par.name)
 
 
 def asserted(source: Source) -> list[Asserted]:
@@ -226,46 +206,37 @@ class Room:
         Other objects will be where ``keep_off`` has them, and need room besides.
         """
         thing, tops = self.scene.thing(name), self.scene.thing(support)
+        spots = np.array(thing.shape.vertices)
         low, high = _corners(tops)
         height = float(high[2] - _corners(thing)[0, 2] + thing.place[2])
-        spots = [
+        reach_m = ARM * self.human.measures["stature"]
+        others = {other: keep_off[other] for other in keep_off if other != name}
+        grid = [
             (float(x), float(y))
             for x in np.arange(low[0] + 0.5 * STEP_M, high[0], STEP_M)
             for y in np.arange(low[1] + 0.5 * STEP_M, high[1], STEP_M)
-            if np.hypot(*np.subtract((x, y), self.scene.place))
-            <= ARM * self.human.measures["stature"]
+            if np.hypot(*np.subtract((x, y), self.scene.place)) <= reach_m
         ]
-        spots.sort(key=lambda spot: float(np.hypot(*np.subtract(spot, thing.place[:2]))))
+        grid.sort(key=lambda spot: float(np.hypot(*np.subtract(spot, thing.place[:2]))))
         found: list[Spot] = []
-        for x, y in spots:
+        for x, y in grid:
             pose = RigidTransform.from_components([x, y, height], thing.pose.rotation)
-            if _within(thing, pose, tops) and self._free(name, support, pose, keep_off):
+            level = pose.apply(spots)[:, :2]
+            within = (level > low[:2] + EDGE_M).all() and (level < high[:2] - EDGE_M).all()
+            if within and not any(
+                name in pair and support not in pair
+                for poses in ({name: pose}, {name: pose, **others})
+                for pair in self.near(poses, ASIDE_M)
+            ):
                 found.append((x, y, height))
             if len(found) == MOST:
                 break
         return tuple(found)
 
-    def _free(
-        self, name: str, support: str, pose: RigidTransform, keep_off: Mapping[str, RigidTransform]
-    ) -> bool:
-        others = {other: keep_off[other] for other in keep_off if other != name}
-        return not any(
-            name in pair and support not in pair
-            for poses in ({name: pose}, {name: pose, **others})
-            for pair in self.near(poses, ASIDE_M)
-        )
-
 
 def _corners(thing: Thing) -> Float[np.ndarray, "2 3"]:
     spots = thing.pose.apply(np.array(thing.shape.vertices))
     return np.stack([spots.min(axis=0), spots.max(axis=0)])
-
-
-def _within(thing: Thing, pose: RigidTransform, support: Thing) -> bool:
-    """Whether all of an object is above its support."""
-    spots = pose.apply(np.array(thing.shape.vertices))[:, :2]
-    low, high = _corners(support)[:, :2]
-    return bool((spots > low + EDGE_M).all() and (spots < high - EDGE_M).all())
 
 
 Condition = tuple[str, ...]
@@ -381,27 +352,22 @@ def places_of(problem: Problem, ways: Sequence[Procedure]) -> tuple[Place, ...]:
                 pose = RigidTransform.from_components(spot, scene.thing(name).pose.rotation)
                 found.append(Place(("spot", name, support, number), name, support, pose))
         for way in ways:
-            if any(way.relations(number).get("stand") == ("1", "1") for number in _moving(way)):
-                found += _slid(problem, way, scene.thing(name))
+            if way.stands("1", "1"):
+                found += _slid(scene, way, scene.thing(name))
     return tuple(found)
 
 
-def _moving(way: Procedure) -> list[int]:
-    return [number for number in range(len(way.steps)) if way.moves(number)]
-
-
-def _slid(problem: Problem, way: Procedure, thing: Thing) -> list[Place]:
+def _slid(scene: Scene, way: Procedure, thing: Thing) -> list[Place]:
     """Where an object is that goes as far along its support as the recorded one did."""
-    scene, path = problem.world.scene, way.source.paths[way.part].translation
+    path, recording = way.source.paths[way.part].translation, way.recording.name
     turn = Rotation.from_euler("z", scene.heading - way.source.scene.heading)
     x, y = np.asarray(thing.place)[:2] + turn.apply(path[-1] - path[0])[:2]
-    support = scene.support(thing.name)
     there = moved(scene, thing.name, (x, y, thing.place[2]), thing.heading)
+    support = scene.support(thing.name)
     if not support or there.support(thing.name) != support:
         return []
     pose = there.thing(thing.name).pose
-    name = way.recording.name
-    return [Place(("slid", name, thing.name), thing.name, support, pose, name)]
+    return [Place(("slid", recording, thing.name), thing.name, support, pose, recording)]
 
 
 def world_facts(problem: Problem, places: Sequence[Place]) -> Iterator[str]:
@@ -422,42 +388,31 @@ def world_facts(problem: Problem, places: Sequence[Place]) -> Iterator[str]:
         yield _fact("on", place.term, place.support)
         far = np.linalg.norm(place.pose.translation - np.asarray(scene.thing(place.thing).place))
         yield _fact("far", place.term, round(1000.0 * float(far)))
-    yield from _meetings(problem, [*_goals(problem), *places])
-
-
-def _goals(problem: Problem) -> Iterator[Place]:
+    goals = list[Place]()
     for name, pose in problem.goals.items():
         x, y, z = (float(value) for value in pose.translation)
-        support = moved(problem.world.scene, name, (x, y, z), 0.0).support(name)
-        yield Place(("goal", name), name, support, pose)
+        support = moved(scene, name, (x, y, z), 0.0).support(name)
+        goals.append(Place(("goal", name), name, support, pose))
+    yield from _meetings(problem, [*goals, *places])
 
 
 def _meetings(problem: Problem, places: Sequence[Place]) -> Iterator[str]:
     """Which places of objects have no room beside which of others, or beside where these are."""
+    room, scene = problem.room, problem.world.scene
     for place in places:
-        near = problem.room.near({place.thing: place.pose}, ROOM_M)
-        for pair in near:
+        for pair in room.near({place.thing: place.pose}, ROOM_M):
             for other in pair - {place.thing, place.support}:
-                if place.thing in pair and not _agreed(problem, place, other):
+                # The recording of an action itself puts its objects beside each other.
+                agreed = place.term == ("goal", place.thing) and other in problem.parts
+                if place.thing in pair and not agreed:
                     yield _fact("meets", place.thing, place.term, other, ("start", other))
         for there in places:
+            sizes = (scene.thing(one.thing).size for one in (place, there))
+            far_m = sum(float(np.linalg.norm(size)) for size in sizes) + ROOM_M
+            apart_m = np.linalg.norm(place.pose.translation - there.pose.translation)
             both = {place.thing: place.pose, there.thing: there.pose}
-            if _may_meet(problem, place, there) and frozenset(both) in problem.room.near(
-                both, ROOM_M
-            ):
+            if len(both) == 2 and apart_m < far_m and frozenset(both) in room.near(both, ROOM_M):
                 yield _fact("meets", place.thing, place.term, there.thing, there.term)
-
-
-def _agreed(problem: Problem, place: Place, other: str) -> bool:
-    """Whether a recording itself puts the object beside the other one."""
-    return place.term == ("goal", place.thing) and other in problem.parts
-
-
-def _may_meet(problem: Problem, place: Place, there: Place) -> bool:
-    things = [problem.world.scene.thing(one.thing) for one in (place, there)]
-    apart = np.linalg.norm(place.pose.translation - there.pose.translation)
-    far = sum(float(np.linalg.norm(thing.size)) for thing in things) + ROOM_M
-    return place.thing != there.thing and bool(apart < far)
 
 
 def way_facts(
@@ -472,24 +427,20 @@ def way_facts(
             for relation, (start, end) in way.relations(number).items():
                 yield _fact("before", name, number, relation, int(start))
                 yield _fact("after", name, number, relation, int(end))
-            if way.moves(number):
+            if step.moves:
                 yield _fact("moves", name, number)
         yield _fact("mirrored", name, OTHER[way.side])
         for thing in mobile(scene):
             for side in sorted(OTHER):
                 yield _fact("way", name, side, thing)
-            yield _fact("strange", name, thing, _strangeness(problem, way, scene.thing(thing)))
-        lifts = any(way.relations(number).get("stand") == ("0", "1") for number in _moving(way))
+            above = problem.kinds(kind_of(way.source.scene.thing(way.part)))
+            own = problem.kinds(kind_of(scene.thing(thing)))
+            # How many levels up the hierarchy both have a kind in common.
+            levels = (level for level, kind in enumerate(above) if kind in own)
+            yield _fact("strange", name, thing, next(levels, len(above)))
         for place in places:
-            if place.way == name or (lifts and not place.way):
+            if place.way == name or (not place.way and way.stands("0", "1")):
                 yield _fact("room", name, place.thing, place.term)
-
-
-def _strangeness(problem: Problem, way: Procedure, thing: Thing) -> int:
-    """How many levels up the hierarchy an object and the recorded one have a kind in common."""
-    above = problem.kinds(kind_of(way.source.scene.thing(way.part)))
-    own = problem.kinds(kind_of(thing))
-    return next((level for level, kind in enumerate(above) if kind in own), len(above))
 
 
 def _fact(name: str, *arguments: Term) -> str:
@@ -576,24 +527,23 @@ def shortest(
 
 def why_unmet(problem: Problem, conditions: Sequence[Condition], ways: Sequence[Procedure]) -> str:
     """Which conditions do not hold, and what would make them hold."""
-    return "; ".join(_why(problem, condition, ways) for condition in conditions)
-
-
-def _why(problem: Problem, condition: Condition, ways: Sequence[Procedure]) -> str:
-    scene, said = problem.world.scene, f"{told(condition)} does not hold"
+    scene, reasons = problem.world.scene, []
     known = ", ".join(sorted({way.recording.name for way in ways})) or "none"
-    if condition[0] == "clear":
-        name = condition[1]
-        near = problem.room.near({name: problem.goals[name]}, ROOM_M)
-        there = sorted(set().union(*(pair for pair in near if name in pair)) - {name})
-        there = [other for other in there if other not in problem.parts]
-        said += f": {', '.join(map(repr, there))} is there"
-        if any(scene.thing(other).tag is TagType.FIXED for other in there):
-            return f"{said} and is fixed; another place for {name!r} would do"
-    return (
-        f"{said}, and no recording makes it so (tried: {known}); a recording of one hand that does "
-        "so with such an object, or a scene in which it holds, would do"
-    )
+    for condition in conditions:
+        said, fixed = f"{told(condition)} does not hold", False
+        if condition[0] == "clear":
+            name = condition[1]
+            near = problem.room.near({name: problem.goals[name]}, ROOM_M)
+            there = set().union(*(pair for pair in near if name in pair)) - {name, *problem.parts}
+            said += f": {', '.join(map(repr, sorted(there)))} is there"
+            fixed = any(scene.thing(other).tag is TagType.FIXED for other in there)
+        reasons.append(
+            f"{said} and is fixed; another place for {condition[1]!r} would do"
+            if fixed
+            else f"{said}, and no recording makes it so (tried: {known}); a recording of one hand "
+            "that does so with such an object, or a scene in which it holds, would do"
+        )
+    return "; ".join(reasons)
 
 
 def _solved(facts: Sequence[str], steps: int) -> Answer:
@@ -646,19 +596,6 @@ def _spot(place: Place | None) -> Spot | None:
 
 MOST_TRIES = 10
 """So many stages are found impossible at most before the action is refused [1]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Performed:
-    """A motion, and how good it is."""
-
-    motion: Motion
-    quality: Quality
-    names: dict[str, str]
-    """The scene's names of the objects by those that the motion has."""
-
-    effort: EffortReport | None = field(default=None, kw_only=True)
-    """With which manner it was performed, where one was asked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -761,23 +698,25 @@ def _performed(
     """All stages in turn; each begins in the world that the one before leaves, as measured."""
     made: list[Done] = []
     for stage in stages:
-        _check_before(stage, world)
+        step = stage.steps[0]
+        now = {
+            "touch": (step.hand, step.thing) in world.touching,
+            "stand": bool(world.scene.support(step.thing)),
+        }
+        for relation, (before, _) in stage.way.relations(step.number).items():
+            if before != str(int(now[relation])):
+                raise StageError(stage, f"by geometry {relation} is {now[relation]} before it")
         made.append(_stage(stage, world, human))
-        scene = scene_after(made[-1].motion, made[-1].names, world.scene)
-        world = World(scene, _touching(made[-1].motion, made[-1].names))
+        motion, names = made[-1].motion, made[-1].names
+        around = Surroundings(motion.plan.human, motion.plan.scene)
+        near = contact_distances(around, motion, len(motion.postures) - 1)
+        touching = frozenset(
+            (side, names[thing])
+            for (side, thing), apart_m in near.items()
+            if side in {"right", "left"} and thing in names and apart_m <= TOUCHES_M
+        )
+        world = World(scene_after(motion, names, world.scene), touching)
     return tuple(made), world
-
-
-def _check_before(stage: Stage, world: World) -> None:
-    """What the first step needs holds by geometry."""
-    step = stage.steps[0]
-    now = {
-        "touch": (step.hand, step.thing) in world.touching,
-        "stand": bool(world.scene.support(step.thing)),
-    }
-    for relation, (before, _) in stage.way.relations(step.number).items():
-        if before != str(int(now[relation])):
-            raise StageError(stage, f"by geometry {relation} is {now[relation]} before it")
 
 
 def _stage(stage: Stage, world: World, human: Human) -> Done:
@@ -789,18 +728,24 @@ def _stage(stage: Stage, world: World, human: Human) -> Done:
         spots = {first.thing: goal.place} if goal and goal.place else {}
         made, where = cast(source, replace(scene, spots=spots), parts)
         if not is_possible(made, where, human):
-            raise StageError(stage, "out of reach")
+            raise PlanError("out of reach")
         motion, quality = regenerate(made, human, where)
-    except StageError:
-        raise
     except PlanError as error:
         raise StageError(stage, str(error)) from error
     names = own_names(source, scene, parts)
-    gate = contact_gate(motion, [*asserted(made), _planned(stage, made, names)])
+    own = {name: role for role, name in names.items()}
+    held: tuple[Contact, bool] = (
+        (first.hand, own[first.thing]), (first.hand, first.thing) in stage.touching
+    )  # fmt: skip
+    put: list[tuple[Contact, bool]] = []
+    if goal:
+        put = [((own[first.thing], own[goal.support]), True)]
+    planned = Asserted("the plan's stage", len(made.times) - 1, (held, *put), "")
+    gate = contact_gate(motion, [*asserted(made), planned])
     quality = Quality((*quality.gates, gate), quality.told)
     if not quality.passed:
         raise StageError(stage, f"it fails {failures(quality)}")
-    return Done(motion, quality, names, stage)
+    return Done(motion, quality, names, None, stage)
 
 
 def _parts(stage: Stage, source: Source, world: World) -> dict[str, str]:
@@ -813,24 +758,3 @@ def _parts(stage: Stage, source: Source, world: World) -> dict[str, str]:
         if role and support and role not in parts and support not in parts.values():
             parts[role] = support
     return parts
-
-
-def _planned(stage: Stage, source: Source, names: dict[str, str]) -> Asserted:
-    """What the plan asserts at the end of a stage."""
-    own = {name: role for role, name in names.items()}
-    step, goal = stage.steps[0], stage.goal
-    touches = (step.hand, step.thing) in stage.touching
-    contacts: list[tuple[Contact, bool]] = [((step.hand, own[step.thing]), touches)]
-    if goal:
-        contacts.append(((own[step.thing], own[goal.support]), True))
-    return Asserted("the plan's stage", len(source.times) - 1, tuple(contacts), "")
-
-
-def _touching(motion: Motion, names: dict[str, str]) -> Touching:
-    around = Surroundings(motion.plan.human, motion.plan.scene)
-    near = contact_distances(around, motion, len(motion.postures) - 1)
-    return frozenset(
-        (side, names[thing])
-        for (side, thing), apart_m in near.items()
-        if side in {"right", "left"} and thing in names and apart_m <= TOUCHES_M
-    )

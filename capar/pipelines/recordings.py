@@ -1,12 +1,15 @@
 """Stored recordings of actions: what was done in each, and where its capture is."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
 from capar.model.observation import Observation
 from capar.model.par import ComplexPar, Step, Upar
+from capar.regeneration.efforts import EffortReport
+from capar.regeneration.motion import Motion
+from capar.regeneration.quality import Quality
 from kb.actionary import Actionary
 from kb.store import names
 from ontology import CAPAR
@@ -38,6 +41,29 @@ class Recording:
     def fits(self, step: Step, action: str) -> bool:
         """Whether a step is an action, or a case of it."""
         return action == step.action or action in self.general.get(step.action, ())
+
+
+@dataclass(frozen=True, eq=False)
+class Performed:
+    """A motion, and how good it is."""
+
+    motion: Motion
+    quality: Quality
+    names: Mapping[str, str]
+    """The scene's names of the objects by those that the motion has."""
+
+    effort: EffortReport | None
+    """With which manner it was performed; None where none was asked for."""
+
+
+def observed_actions(recordings: Iterable[Recording]) -> set[str]:
+    """Every action that recordings hold: steps, what these are cases of, and wholes."""
+    names = set()
+    for one in recordings:
+        steps = {step.action for step in one.steps}
+        general = (name for step in steps for name in one.general.get(step, ()))
+        names |= {one.par.name, *steps, *general}
+    return names
 
 
 def observed_recording(observation: Observation, capture: Path) -> Recording:

@@ -1,8 +1,9 @@
 """Round trips: observe, perform on other bodies, observe again, and compare."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from capar.regeneration.captures import (
     completed,
     joint_capture_of,
     mirrored,
+    read_completion,
 )
 from capar.regeneration.hand_overs import JointSource, joint_source, regenerate_together
 from capar.regeneration.motion import Motion
@@ -36,45 +38,54 @@ SAME = "same"
 
 @dataclass(frozen=True)
 class Trip:
-    """One performance on another body, observed again."""
+    """One performance on another body, or on others together, observed again."""
 
     agent: str
+    """Whose body; of several performers joined by a plus sign, in the order of the recorded."""
+
     scene: int
     """Number of the drawn scene; 0 for the recorded one."""
 
-    refused: str
+    refused: str = ""
     """Why it was not performed; empty where it was."""
 
-    quality: Quality | None
-    same_par: bool
-    same_contacts: bool
-    same_relations: bool
-    names: str
+    same_par: bool = False
+    same_contacts: bool = False
+    same_relations: bool = False
+    names: str = ""
     """What was done according to the second observation, where that differs."""
 
-    motion: Motion | None
-    """What was performed; None where it was refused."""
+    failed: tuple[str, ...] = ()
+    """Gates that do not hold, and of what or whom."""
+
+    quality: Quality | None = None
+    motion: Motion | None = None
+    """What was performed; None where it was refused, or by several."""
 
     @property
     def passed(self) -> bool:
         """Whether the same action came out of a good motion."""
-        good = self.quality is not None and self.quality.passed
-        return good and self.same_par and self.same_contacts and self.same_relations
+        same = self.same_par and self.same_contacts and self.same_relations
+        return not self.refused and not self.failed and same
+
+    def row(self) -> dict[str, Any]:
+        """What came of it, for machines."""
+        names = (each.name for each in fields(self) if each.name not in {"motion", "quality"})
+        gates = self.quality and self.quality.gates
+        return {name: getattr(self, name) for name in names} | {"gates": gates}
 
 
 def observed_source(
     capture: Capture | Path | str,
-    completion: Completion | None = None,
+    completion: Completion | Path | None = None,
     *,
-    rules: str = "extended",
     cutoff_hz: float | None = CUTOFF_HZ,
 ) -> Source:
     """A capture, observed and ready to be performed.
 
     Args:
         capture: What was recorded, or where it is described.
-        completion: What is assumed where the recording does not say it.
-        rules: Profile by which it is observed.
+        completion: What is assumed where the recording does not say it, or the file of it.
         cutoff_hz: Of the filter that takes noise from paths [Hz]; None leaves them as recorded.
 
     Raises:
@@ -83,17 +94,13 @@ def observed_source(
     """
     trial = trial_of(capture)
     if completion is None:
-        return source_of(trial, observe(trial, rules=rules), cutoff_hz=cutoff_hz)
-    trial = completed(trial, completion)
+        return source_of(trial, observe(trial), cutoff_hz=cutoff_hz)
+    known = read_completion(completion) if isinstance(completion, Path) else completion
+    trial = completed(trial, known)
     return source_of(
-        trial,
-        observe(trial, rules=rules),
-        stance=completion.stance,
-        floor_m=completion.floor_m,
-        axes=completion.axes,
-        notes=completion.notes,
-        cutoff_hz=cutoff_hz,
-    )
+        trial, observe(trial), stance=known.stance, floor_m=known.floor_m, axes=known.axes,
+        notes=known.notes, cutoff_hz=cutoff_hz,
+    )  # fmt: skip
 
 
 def by_hand(source: Source, side: str) -> Source:
@@ -146,9 +153,15 @@ def round_trip(source: Source, agent: str, human: Human, number: int, scene: Sce
     try:
         motion, quality = regenerate(source, human, scene)
     except PlanError as error:
-        return Trip(agent, number, str(error), None, False, False, False, "", None)
+        return Trip(agent, number, str(error))
     made = capture_of(motion, name=source.capture.name, agent=agent)
-    return Trip(agent, number, "", quality, *_again(source.observation, made), motion)
+    failed = tuple(
+        f"{gate.name} {gate.value:.2f} {gate.unit} {gate.bodies}".strip()
+        for gate in quality.gates
+        if not gate.passed
+    )
+    same = _again(source.observation, made)
+    return Trip(agent, number, "", *same, failed, quality, motion)
 
 
 def _again(first: Observation, made: Capture) -> tuple[bool, bool, bool, str]:
@@ -166,42 +179,13 @@ def _again(first: Observation, made: Capture) -> tuple[bool, bool, bool, str]:
     return same, pairs[0] == pairs[1], one.relations == two.relations, "" if same else names
 
 
-@dataclass(frozen=True)
-class JointTrip:
-    """One performance by several other bodies, observed again."""
-
-    agents: str
-    """Their bodies, in the order of the recorded agents, joined by a plus sign."""
-
-    scene: int
-    """Number of the drawn scene; 0 for the recorded one."""
-
-    refused: str
-    """Why it was not performed; empty where it was."""
-
-    failed: tuple[str, ...]
-    """Gates that do not hold, and whose."""
-
-    same_par: bool
-    same_contacts: bool
-    same_relations: bool
-    names: str
-    """What was done according to the second observation, where that differs."""
-
-    @property
-    def passed(self) -> bool:
-        """Whether the same action came out of good motions."""
-        same = self.same_par and self.same_contacts and self.same_relations
-        return not self.refused and not self.failed and same
-
-
-def observed_joint_source(capture: Capture, *, rules: str = "extended") -> JointSource:
+def observed_joint_source(capture: Capture) -> JointSource:
     """A capture of several performers, observed and ready to be performed.
 
     Raises:
         PlanError: The capture does not determine a performance.
     """
-    return joint_source(capture, observe(capture, rules=rules))
+    return joint_source(capture, observe(capture))
 
 
 def bodies(agents: Sequence[str], source: JointSource) -> dict[str, Human]:
@@ -227,38 +211,26 @@ def bodies(agents: Sequence[str], source: JointSource) -> dict[str, Human]:
     return {name: body(pairs.get(name, "same"), one) for name, one in source.sources.items()}
 
 
-def drawn_scenes(source: JointSource, number: int, seed: int) -> dict[str, Scene]:
-    """The drawn objects of a number, and everybody where that one stood; 0 is as recorded."""
-    scenes = {name: one.scene for name, one in source.sources.items()}
-    if not number:
-        return scenes
-    first = next(iter(scenes.values()))
-    things = drawn_scene(first, np.random.default_rng([seed, number])).things
-    return {name: replace(scene, things=things) for name, scene in scenes.items()}
-
-
 def joint_round_trips(
     source: JointSource, casts: Sequence[str], *, scenes: int = 0, seed: int = 0
-) -> Iterator[JointTrip]:
-    """Perform with every cast in every scene, and observe again."""
+) -> Iterator[Trip]:
+    """Perform with every cast in every scene, and observe again.
+
+    Of a drawn scene the objects are drawn, and everybody is where that one stood.
+    """
+    people = {cast: bodies(cast.split("+"), source) for cast in casts}
+    recorded = {name: one.scene for name, one in source.sources.items()}
     for number in range(1, scenes + 1) if scenes else (0,):
-        where = drawn_scenes(source, number, seed)
-        for agents in casts:
-            humans = bodies(agents.split("+"), source)
-            yield joint_round_trip(source, agents, humans, number, where)
-
-
-def joint_round_trip(
-    source: JointSource,
-    agents: str,
-    humans: Mapping[str, Human],
-    number: int,
-    scenes: Mapping[str, Scene],
-) -> JointTrip:
-    """Perform with some bodies in one scene, and observe again."""
-    try:
-        made = regenerate_together(source, humans, scenes)
-    except PlanError as error:
-        return JointTrip(agents, number, str(error), (), False, False, False, "")
-    again = _again(source.observation, joint_capture_of(made, name=source.capture.name))
-    return JointTrip(agents, number, "", made.failed, *again)
+        where = recorded
+        if number:
+            first = next(iter(recorded.values()))
+            things = drawn_scene(first, np.random.default_rng([seed, number])).things
+            where = {name: replace(scene, things=things) for name, scene in recorded.items()}
+        for cast, humans in people.items():
+            try:
+                made = regenerate_together(source, humans, where)
+            except PlanError as error:
+                yield Trip(cast, number, str(error))
+                continue
+            again = joint_capture_of(made, name=source.capture.name)
+            yield Trip(cast, number, "", *_again(source.observation, again), made.failed)

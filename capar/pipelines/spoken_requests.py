@@ -1,6 +1,6 @@
 """Words to performances: requests read from a sentence, and the recordings that do them."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,12 +9,10 @@ from capar.body.human import Human
 from capar.body.scenes import Thing
 from capar.model.capture import TagType
 from capar.model.par import Step
-from capar.pipelines.recordings import Recording
+from capar.pipelines.recordings import Performed, Recording
 from capar.pipelines.round_trips import by_hand, observed_source
 from capar.regeneration import efforts
 from capar.regeneration.captures import scene_after
-from capar.regeneration.motion import Motion
-from capar.regeneration.quality import Quality
 from capar.regeneration.roles import Cast, cast, check_movable, own_names
 from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.sources import Source
@@ -26,10 +24,11 @@ from kb.language.vocabulary import Vocabulary
 CONTAINING = frozenset({"in", "into", "inside"})
 """Prepositions of a goal that is a container."""
 
-SIDES = {"to the left": 1.0, "to the right": -1.0}
+DIRECTIONS = {"to the left": 1.0, "to the right": -1.0}
 """Directions that are compared with the recorded one, positive to the performer's left."""
 
-BOTH = "both_hands"
+SIDES = {"left": ("left",), "right": ("right",), "both": ("left", "right")}
+"""Sides of an end-effector, by the first part of its name."""
 
 
 class RequestError(PlanError):
@@ -49,9 +48,6 @@ class Request:
     """An action that is to be done, on objects by their names in the scene."""
 
     action: str
-    said: str
-    """The verb as a message says it."""
-
     objects: tuple[str, ...]
     sides: frozenset[str] = frozenset()
     """Hands that were named; empty where any will do."""
@@ -63,11 +59,15 @@ class Request:
     """One for to the left, minus one for to the right."""
 
     unheeded: tuple[str, ...] = ()
-    """What was said and has no effect."""
+    """Adverbs that say neither a place nor a direction."""
+
+    def __str__(self) -> str:
+        """The action and its objects."""
+        return " ".join((self.action, *self.objects))
 
 
 def read_requests(
-    text: str, vocabulary: Vocabulary, scene: Scene, observed: frozenset[str] = frozenset()
+    text: str, vocabulary: Vocabulary, scene: Scene, observed: Collection[str] = ()
 ) -> tuple[Request, ...]:
     """What a text asks for, in order.
 
@@ -87,41 +87,33 @@ def read_requests(
     steps = value.steps if isinstance(value, Plan) else (value,)
     if isinstance(value, Plan) and any(len(part) > 1 for part in value.parts):
         raise RequestError("words", "actions at the same time cannot be asked for; say 'then'")
-    return tuple(request for step in steps for request in _requests(step, scene, observed))
+    return tuple(
+        request
+        for step in steps
+        for request in [_request(step, scene, observed)] * max(step.circumstances.count, 1)
+    )
 
 
-def _requests(step: Instruction, scene: Scene, observed: frozenset[str]) -> Iterable[Request]:
-    told = step.circumstances
-    if told.negated or told.conditions:
-        what = "what is not to be done" if told.negated else "a condition"
+def _request(step: Instruction, scene: Scene, observed: Collection[str]) -> Request:
+    said, action = step.circumstances, step.call.action
+    if said.negated or said.conditions:
+        what = "what is not to be done" if said.negated else "a condition"
         raise RequestError("words", f"{what} cannot be performed; say only what to do")
-    if step.said or not step.known or not step.call.action:
-        verb = step.said or step.call.action
-        raise _unknown(verb, observed)
-    if observed and step.call.action not in observed:
-        raise _unknown(step.call.action, observed)
-    named = [name for _, name in told.places if name not in step.call.objects]
+    done = {name.lower() for name in observed}
+    if step.said or not step.known or not action or (done and action.lower() not in done):
+        known = f"; observed are {', '.join(sorted(observed))}" if observed else ""
+        raise RequestError("verb", f"nobody was observed doing {step.said or action!r}{known}")
+    named = [name for _, name in said.places if name not in step.call.objects]
     objects = tuple(find_thing(each, scene).name for each in (*step.call.objects, *named) if each)
-    contained = any(word in CONTAINING for word, _ in told.places)
-    aside = sum(SIDES.get(each, 0.0) for each in told.manner)
-    unheeded = tuple(each for each in told.manner if each not in SIDES)
-    made = Request(
-        step.call.action, step.call.action, objects[: len(step.call.objects)] or objects,
-        _sides(step.ee), contained, aside, unheeded,
-    )  # fmt: skip
-    return [made] * max(told.count, 1)
-
-
-def _unknown(verb: str, observed: frozenset[str]) -> RequestError:
-    known = f"; observed are {', '.join(sorted(observed))}" if observed else ""
-    return RequestError("verb", f"nobody was observed doing {verb!r}{known}")
-
-
-def _sides(ee: str) -> frozenset[str]:
-    if ee == BOTH:
-        return frozenset({"left", "right"})
-    side = ee.partition("_")[0]
-    return frozenset({side}) if side in {"left", "right"} else frozenset()
+    side = step.ee.partition("_")[0]
+    return Request(
+        action,
+        objects[: len(step.call.objects)] or objects,
+        frozenset(SIDES.get(side, ())),
+        any(word in CONTAINING for word, _ in said.places),
+        sum(DIRECTIONS.get(each, 0.0) for each in said.manner),
+        tuple(each for each in said.manner if each not in DIRECTIONS),
+    )
 
 
 def find_thing(word: str, scene: Scene) -> Thing:
@@ -157,18 +149,11 @@ class Choice:
 
 
 @dataclass(frozen=True, eq=False)
-class Performance:
+class Performance(Performed):
     """What was performed for a choice."""
 
     choice: Choice
-    motion: Motion
-    quality: Quality
-    names: dict[str, str]
-    """The scene's names of the objects by those that the motion has."""
-
     notes: tuple[str, ...]
-    effort: efforts.EffortReport | None = None
-    """None where no manner was asked for."""
 
 
 def choices(requests: Sequence[Request], recordings: Sequence[Recording]) -> tuple[Choice, ...]:
@@ -185,11 +170,11 @@ def choices(requests: Sequence[Request], recordings: Sequence[Recording]) -> tup
     while at < len(requests):
         for size in range(len(requests) - at, 0, -1):
             part = tuple(requests[at : at + size])
-            fitting = sorted(_fitting(part, recordings), key=lambda each: each[0])
+            does = ((one, _steps_for(part, one)) for one in recordings)
+            fitting = [(_rank(part, *each), *each) for each in does if each[1]]
             if fitting:
-                _, recording, steps = fitting[0]
-                others = tuple(each.name for _, each, _ in fitting[1:])
-                found.append(Choice(part, recording, steps, others))
+                (_, recording, steps), *others = sorted(fitting, key=lambda each: each[0])
+                found.append(Choice(part, recording, steps, tuple(o[1].name for o in others)))
                 at += size
                 break
         else:
@@ -197,71 +182,42 @@ def choices(requests: Sequence[Request], recordings: Sequence[Recording]) -> tup
     return tuple(found)
 
 
-def _fitting(
-    requests: tuple[Request, ...], recordings: Sequence[Recording]
-) -> Iterator[tuple[tuple[int, int, str], Recording, tuple[Step, ...]]]:
-    for recording in recordings:
-        steps = _steps_for(requests, recording)
-        if steps:
-            pairs = _parts(requests, steps).items()
-            foreign = sum(
-                name not in {part, *recording.kinds.get(part, ())} for part, name in pairs
-            )
-            yield (len(recording.steps), foreign, recording.name), recording, steps
+def _rank(
+    requests: Sequence[Request], recording: Recording, steps: Sequence[Step]
+) -> tuple[int, int, str]:
+    pairs = _parts(requests, steps).items()
+    foreign = sum(name not in {part, *recording.kinds.get(part, ())} for part, name in pairs)
+    return len(recording.steps), foreign, recording.name
 
 
-def _steps_for(requests: tuple[Request, ...], recording: Recording) -> tuple[Step, ...]:
+def _steps_for(requests: Sequence[Request], recording: Recording) -> tuple[Step, ...]:
     """The steps that do the requests one after the other; none if it does not."""
-    sides = _acting(recording)
-    if len(requests) == 1 and _is_called(recording, requests[0]):
-        handled = [
-            each for each in recording.steps if len(each.objects) >= len(requests[0].objects)
-        ]
-        if len(requests[0].sides) in {0, len(sides)}:
-            return tuple(handled[:1])
-    for link in recording.par.links:
-        found: list[Step] = []
-        after = -1
+    first, links = requests[0], recording.par.links
+    acting = len(
+        {link.ee.partition("_")[0] for link in links if any(s.objects for s in link.steps)}
+    )
+    if any(request.sides and len(request.sides) != acting for request in requests):
+        return ()
+    called = first.objects and recording.par.name.lower() == first.action.lower()
+    if len(requests) == 1 and called:  # the whole recording, as its user named it
+        return tuple(s for s in recording.steps if len(s.objects) >= len(first.objects))[:1]
+    for link in links:
+        rest, found = iter(link.steps), list[Step]()
         for request in requests:
-            if request.sides and len(request.sides) != len(sides):
-                break
-            step = next(
+            found += next(
                 (
-                    (number, each)
-                    for number, each in enumerate(link.steps)
-                    if number > after
-                    and recording.fits(each, request.action)
-                    and len(each.objects) >= len(request.objects) > 0
+                    [step]
+                    for step in rest
+                    if recording.fits(step, request.action)
+                    and len(step.objects) >= len(request.objects) > 0
                 ),
-                None,
+                [],
             )
-            if step is None:
-                break
-            after = step[0]
-            found.append(step[1])
-        if len(found) == len(requests) and _one_thing_a_part(requests, found):
-            return tuple(found)
+        if len(found) == len(requests):
+            pairs = {(s.objects[0], r.objects[0]) for r, s in zip(requests, found, strict=True)}
+            if len(dict(pairs)) == len(pairs):  # each handled object stands for one throughout
+                return tuple(found)
     return ()
-
-
-def _is_called(recording: Recording, request: Request) -> bool:
-    """Whether the whole recording has the name of the action, as its user named it."""
-    return bool(request.objects) and recording.par.name.lower() == request.action.lower()
-
-
-def _acting(recording: Recording) -> set[str]:
-    """The sides of the hands that handle something."""
-    return {
-        link.ee.partition("_")[0]
-        for link in recording.par.links
-        if any(step.objects for step in link.steps)
-    }
-
-
-def _one_thing_a_part(requests: Sequence[Request], steps: Sequence[Step]) -> bool:
-    """Whether a recorded object that is handled stands for one object throughout."""
-    pairs = {(s.objects[0], r.objects[0]) for r, s in zip(requests, steps, strict=True)}
-    return len(dict(pairs)) == len(pairs)
 
 
 def _parts(requests: Sequence[Request], steps: Sequence[Step]) -> dict[str, str]:
@@ -269,19 +225,11 @@ def _parts(requests: Sequence[Request], steps: Sequence[Step]) -> dict[str, str]
     return {s.objects[0]: r.objects[0] for r, s in zip(requests, steps, strict=True)}
 
 
-def observed_actions(recordings: Sequence[Recording]) -> frozenset[str]:
-    """Every action that a recording holds, with more general ones and names of wholes."""
-    own = {step.action for each in recordings for step in each.steps}
-    general = {
-        name for each in recordings for action in own for name in each.general.get(action, ())
-    }
-    return frozenset(own | general | {each.par.name.capitalize() for each in recordings})
-
-
 def _unobserved(request: Request, recordings: Sequence[Recording]) -> RequestError:
     known = sorted({step.action for each in recordings for step in each.steps})
     hands = " with both hands" if len(request.sides) > 1 else ""
-    what = f"{request.said!r}{hands}" + (" with another thing" if len(request.objects) > 1 else "")
+    what = f"{request.action!r}{hands}"
+    what += " with another thing" if len(request.objects) > 1 else ""
     return RequestError(
         "verb", f"nobody was observed doing {what}; observed are {', '.join(known) or 'no actions'}"
     )
@@ -328,7 +276,7 @@ def perform(
     )
     names = own_names(recorded, scene, parts)
     notes = (*_notes(choice, parts), *efforts.told_of_words(words, stated=effort is not None))
-    return Performance(choice, motion, quality, names, notes, report)
+    return Performance(motion, quality, names, report, choice, notes)
 
 
 def after(performance: Performance, scene: Scene) -> Scene:
@@ -393,7 +341,7 @@ def _check_side(request: Request, step: Step, source: Source) -> None:
 
 
 def _notes(choice: Choice, parts: Cast) -> list[str]:
-    asked = ", then ".join(" ".join((each.said, *each.objects)) for each in choice.requests)
+    asked = ", then ".join(map(str, choice.requests))
     told = [f"{asked}: performed as in recording {choice.recording.name!r}"]
     if choice.others:
         told.append(

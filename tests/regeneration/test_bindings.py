@@ -13,7 +13,7 @@ from capar.body.scenes import Thing, box, cup, table
 from capar.body.scripted_actions import action_capture
 from capar.model.capture import TagType
 from capar.model.errors import UnknownNameError
-from capar.pipelines.instantiation import Applied, check_applicable
+from capar.pipelines.instantiation import check_applicable
 from capar.pipelines.observation import observe
 from capar.pipelines.recordings import observed_recording
 from capar.pipelines.round_trips import observed_source
@@ -114,27 +114,27 @@ def test_declared_abilities_rule_out_what_is_not_among_them_and_name_what_would_
 ):
     recording = observed_recording(observe(action_capture("slide", rate_hz=30.0)), Path("slide"))
     known: dict[str, tuple[Ability, ...]] = {}
-    applied = Applied(
-        "Push", recording.par, recording.steps, recording.general, ("tim", "child"), {"mug": "mug"}
-    )
 
-    def abilities(name: str) -> tuple[Ability, ...]:
-        return known.get(name, ())
+    def check() -> tuple[str, ...]:
+        own = {"mug": "mug"}
+        return check_applicable(
+            "Push", recording, ("tim", "child"), own, lambda name: known.get(name, ())
+        )
 
-    (note,) = check_applicable(applied, abilities)
+    (note,) = check()
     assert "no ability is declared" in note
     known["tim"] = (Ability("Reach", "declared"), Ability("Touch", "observed"))
     with pytest.raises(
         PlanError, match=r"capable\(tim, Push\) .* `capar agent can tim Push Resume"
     ):
-        check_applicable(applied, abilities)
+        check()
     known["tim"] += (Ability("MoveObj", "declared"), Ability("ResumePosture", "declared"))
-    assert not check_applicable(applied, abilities)
+    assert not check()
     known["mug"] = (Ability("Drink", "declared"), Ability("Reach", "observed"))
     with pytest.raises(PlanError, match=r"capable\(mug, Touch\) .* `capar object can mug Touch"):
-        check_applicable(applied, abilities)
+        check()
     known["mug"] = (Ability("Push", "declared"),)
-    assert not check_applicable(applied, abilities)
+    assert not check()
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from recorded_worlds import Worlds, worlds_in
 from capar.body.scenes import Thing, box
 from capar.body.scripted_actions import ACTIONS, action_capture
 from capar.model.capture import TagType
-from capar.pipelines.instantiation import Asked, Instance, Knowledge, instantiate
+from capar.pipelines.instantiation import Asked, Instance, instantiate
 from capar.pipelines.preparation import (
     Problem,
     Procedure,
@@ -51,7 +51,7 @@ def _instance(action: str, scene: Scene | None = None) -> Instance:
     source = _source(action)
     asked = Asked(action, ("man",), source.human, {}, scene or source.scene, own=True)
     recording = observed_recording(source.observation, Path(action))
-    return instantiate(asked, recording, source, Knowledge(_kinds, lambda _: ()))
+    return instantiate(asked, recording, source, _kinds, lambda _: ())
 
 
 def _ways(*actions: str) -> tuple[Procedure, ...]:

@@ -13,12 +13,11 @@ from capar.body.recording import Truth, write_bundle
 from capar.body.scripted_actions import action_capture
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
-from capar.pipelines.recordings import Recording, observed_recording
+from capar.pipelines.recordings import Recording, observed_actions, observed_recording
 from capar.pipelines.spoken_requests import (
     Choice,
     RequestError,
     choices,
-    observed_actions,
     read_requests,
 )
 from capar.pipelines.trials import trial_of
