@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer import Argument, Option
 
-from capar.cli.options import Beside, Rules, Steady, rule_base
-from capar.cli.output import print_json
+from capar.cli.options import Beside, Capture, Json, ProfileName, Rules, Steady, rule_base
+from capar.cli.output import check_picture, check_writable, print_json, save
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,9 +18,7 @@ if TYPE_CHECKING:
 
 
 def explain(
-    capture: Annotated[
-        str, Argument(help="A capture bundle's folder or capture.toml; FOLDER:TAKE for a take.")
-    ],
+    capture: Capture,
     segment: Annotated[
         str | None,
         Argument(
@@ -38,11 +36,11 @@ def explain(
     every: Annotated[
         bool, Option("--all", help="With --why-not: every answer that is as small.")
     ] = False,
-    profile: Annotated[str, Option(help="The rules: extended or thesis.")] = "extended",
+    profile: ProfileName = "extended",
     rules: Rules = None,
     actionary: Beside = None,
     steady: Steady = None,
-    json: Annotated[bool, Option("--json", help="Print the whole tree as JSON.")] = False,
+    json: Json = False,
     svg: Annotated[Path | None, Option(help="Draw the tree to this file.")] = None,
     plot: Annotated[
         Path | None,
@@ -56,41 +54,49 @@ def explain(
 
     Printed are its conditions with measured value and limit, and the rules behind it.
     """
-    from capar.cli.output import check_writable
-    from capar.pipelines.explanation import explained, segment_named
-    from capar.views.explanation_text import explanation_lines, notices_about
-    from capar.views.notices import reservation_lines
+    from capar.pipelines.explanation import chosen, explained, explanation_plot
+    from capar.views.explanation_plot import draw_explanation
+    from capar.views.explanation_svg import reasons_svg
+    from capar.views.explanation_text import explanation_lines
     from extractors.readers.bundle.capture_toml import read_capture
 
     if svg:
         check_writable(svg, suffixes=(".svg",))
-    if plot:
-        from capar.views.picture import SUFFIXES
-
-        check_writable(plot, suffixes=tuple(SUFFIXES))
+    check_picture(plot)
     base = rule_base(profile, rules, actionary, steady=steady)
     seen = explained(read_capture(capture), rules=base)
-    every_one = seen.observation.segments
-    chosen = tuple(one for one in every_one if not segment or one.ee == segment)
-    alone = bool(segment) and not chosen
-    if segment and alone:
-        chosen = (segment_named(seen.observation, segment),)
+    observation = seen.observation
+    asked = chosen(observation, segment or "")
+    alone = "/" in (segment or "")
     if why_not:
-        _why_not(why_not, chosen, seen, json=json, alone=alone, limit=100 if every else 1)
+        _why_not(why_not, asked, seen, json=json, alone=alone, limit=100 if every else 1)
         return
-    told = seen.explain(chosen)
+    told = seen.explain(asked)
     if svg:
-        _draw(told, seen, svg)
+        save(svg, reasons_svg(told, observation), "drew")
     if plot:
-        _plot(told, seen, plot)
+        if len(told) != 1:
+            raise typer.BadParameter(
+                "draws one segment: name one, such as right_hand/3.", param_hint="--plot"
+            )
+        save(plot, lambda draft: draw_explanation(explanation_plot(seen, told[0]), draft), "drew")
     if json:
         print_json([_plain(each, seen) for each in told])
         return
     for each in told:
         definitions = seen.definitions(each) if alone else None
-        for line in explanation_lines(each, seen.observation, definitions):
+        for line in explanation_lines(each, observation, definitions):
             typer.echo(line)
-    notices = notices_about(chosen, seen.observation, told if alone else ())
+    _print_notices(asked, seen, told if alone else ())
+
+
+def _print_notices(
+    segments: "Sequence[Segment]", seen: "Explained", told: "Sequence[Explanation]" = ()
+) -> None:
+    from capar.views.explanation_text import notices_about
+    from capar.views.notices import reservation_lines
+
+    notices = notices_about(segments, seen.observation, told)
     for line in reservation_lines(notices, called=seen.explainer.names, unshaped=seen.unshaped):
         typer.echo(line)
 
@@ -108,7 +114,6 @@ def _why_not(
     from dataclasses import asdict
 
     from capar.views.explanation_text import condition_table, header, notices_about
-    from capar.views.notices import reservation_lines
     from capar_rules.explain.why_not import why_not
 
     rows = []
@@ -129,19 +134,16 @@ def _why_not(
             typer.echo(f"{header(one)}  {one.name}")
         for rule in near:
             if rule.failing:
-                typer.echo(f"Nearest rule: {rule.rule} lacks")
-                for line in condition_table(rule.failing):
-                    typer.echo(line)
+                lines = "\n".join(condition_table(rule.failing))
+                typer.echo(f"Nearest rule: {rule.rule} lacks\n{lines}")
         for each in found:
             typer.echo(each.sentence)
         if not found:
             typer.echo(f"Nothing between these borders could have been {name}.")
     if json:
         print_json(rows)
-        return
-    notices = notices_about(asked, seen.observation)
-    for line in reservation_lines(notices, called=seen.explainer.names, unshaped=seen.unshaped):
-        typer.echo(line)
+    else:
+        _print_notices(asked, seen)
 
 
 def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
@@ -152,47 +154,19 @@ def _plain(told: "Explanation", seen: "Explained") -> dict[str, object]:
     observation = seen.observation
     segments = [e for e in observation.segments if (e.ee, e.index) == (told.ee, told.index)]
     notices = [note.document() for note in notices_about(segments, observation, [told])]
-    whole = replace(told, reason=told.reason.expanded_once())
-    placed = _placed(asdict(whole), seen)
+    placed = _placed(asdict(replace(told, reason=told.reason.expanded_once())), seen)
     return placed | {"definitions": seen.definitions(told), "notices": notices}
 
 
-def _placed(node: dict[str, Any], seen: "Explained") -> dict[str, Any]:
+def _placed(node: Any, seen: "Explained") -> Any:
     """A tree as JSON, and beside each atom the segments that it refers to by their ticks."""
     from capar.pipelines.explanation import segments_in
 
-    placed: dict[str, Any] = {}
-    for key, value in node.items():
-        if isinstance(value, dict):
-            placed[key] = _placed(value, seen)
-        elif isinstance(value, list | tuple):
-            whole = [_placed(each, seen) if isinstance(each, dict) else each for each in value]
-            placed[key] = whole
-        else:
-            placed[key] = value
-        if key == "atom":
-            placed["segments"] = list(segments_in(seen, str(value)))
+    if isinstance(node, list | tuple):
+        return [_placed(each, seen) for each in node]
+    if not isinstance(node, dict):
+        return node
+    placed = {key: _placed(value, seen) for key, value in node.items()}
+    if "atom" in node:
+        placed["segments"] = list(segments_in(seen, str(node["atom"])))
     return placed
-
-
-def _draw(told: "Sequence[Explanation]", seen: "Explained", path: Path) -> None:
-    from capar.cli.output import written
-    from capar.views.explanation_svg import reasons_svg
-
-    with written(path) as draft:
-        draft.write_text(reasons_svg(told, seen.observation), encoding="utf-8")
-    typer.echo(f"drew {path}", err=True)
-
-
-def _plot(told: "Sequence[Explanation]", seen: "Explained", path: Path) -> None:
-    from capar.cli.output import written
-    from capar.pipelines.explanation import explanation_plot
-    from capar.views.explanation_plot import draw_explanation
-
-    if len(told) != 1:
-        raise typer.BadParameter(
-            "draws one segment: name one, such as right_hand/3.", param_hint="--plot"
-        )
-    with written(path) as draft:
-        draw_explanation(explanation_plot(seen, told[0]), draft)
-    typer.echo(f"drew {path}", err=True)

@@ -2,11 +2,11 @@
 
 import json as codec
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -26,22 +26,21 @@ from capar.cli.options import (
     confirm_new,
     rule_base,
 )
-from capar.cli.output import check_writable, written
+from capar.cli.output import check_picture, console, save
 from capar.model.errors import CaparError, FileError, RuleError
 
 if TYPE_CHECKING:
     from capar.model.calibration import Calibration
     from capar.model.capture import Capture
     from capar.model.observation import Observation
-    from capar.pipelines.live.frames import Poses
+    from capar.pipelines.live.frames import DeviceFrames, Poses
     from capar.pipelines.live.ledgers import SegmentEvent
     from capar.pipelines.live.observer import LiveObserver
     from capar_rules.engine.profiles import Profile
+    from extractors.devices.tracker import LiveTracker
     from extractors.measure import Measurements
 
 LIVE_COLUMNS = "   time  status       segment          from-to [s]     what was done"
-WAIT_S = 0.02
-"""Pause while no frame is due [s]."""
 
 
 class OnUnknown(StrEnum):
@@ -155,10 +154,14 @@ def observe(
     With --live a segment is printed when it ends, provisional first and then settled; Ctrl-C ends
     it. Other programs get the same events with --json, --websocket or --lsl-markers.
     """
-    _check_output({"--json": json, "--script": script, "--pars": pars}, plot)
-    if actionary and Path(actionary).is_file():
-        raise FileError(actionary, "is a file; an Actionary is a folder.", "Name a folder.")
+    forms = {"--json": json, "--script": script, "--pars": pars}
+    named = [form for form, given in forms.items() if given]
+    if len(named) > 1:
+        raise CaparError(f"{' and '.join(named)} print different things; say one of them")
+    check_picture(plot)
     if actionary:
+        if Path(actionary).is_file():
+            raise FileError(actionary, "is a file; an Actionary is a folder.", "Name a folder.")
         confirm_new(actionary, new=new)
     if live or device:
         if plot or set_ or on_unknown or fit:
@@ -169,12 +172,11 @@ def observe(
             capture, device, rig, calibration, lead_in, speed, json, name, websocket, lsl_markers
         )
         observation = _observe_live(source, rule_base(profile, rules, actionary, steady=steady))
-        stored = [_store(observation, actionary, name=name, wait_s=wait)] if actionary else []
+        stored = _store(observation, actionary, name=name, wait_s=wait)
         if not json:
             typer.echo()
-            _print(observation, json=False, script=script, pars=pars)
-        for line in stored:
-            typer.echo(line, err=True)
+            _print(observation, script=script, pars=pars)
+        typer.echo(stored, err=True, nl=bool(stored))
         return
     if websocket is not None or lsl_markers:
         raise CaparError("--websocket and --lsl-markers send events of --live; give --live as well")
@@ -205,22 +207,11 @@ def observe(
     elif choice is OnUnknown.FAIL:
         _fail_on_unknown(observation)
     # Files first: a reader of the output who stops early, as `head` does, ends the command.
-    done = [_draw(observation, trial, measurements, plot)] if plot else []
-    done += [_store(observation, actionary, name=name, wait_s=wait)] if actionary else []
-    _print(observation, json=json, script=script, pars=pars)
-    for line in done:
-        typer.echo(line, err=True)
-
-
-def _check_output(forms: dict[str, bool], plot: Path | None) -> None:
-    """Check that the output can be written, before anything is computed."""
-    named = [form for form, given in forms.items() if given]
-    if len(named) > 1:
-        raise CaparError(f"{' and '.join(named)} print different things; say one of them")
     if plot:
-        from capar.views.picture import SUFFIXES
-
-        check_writable(plot, suffixes=SUFFIXES)
+        _draw(observation, trial, measurements, plot)
+    stored = _store(observation, actionary, name=name, wait_s=wait)
+    _print(observation, json=json, script=script, pars=pars)
+    typer.echo(stored, err=True, nl=bool(stored))
 
 
 def demo(
@@ -235,8 +226,10 @@ def demo(
         observe(str(bundle), name="DrinkFromMug", plot=plot)
 
 
-def _store(observation: "Observation", place: str, *, name: str, wait_s: float) -> str:
-    """Add an observation to an Actionary; what became of it, to be printed."""
+def _store(observation: "Observation", place: str | None, *, name: str, wait_s: float) -> str:
+    """Add an observation to an Actionary, if one is named; what became of it, to be printed."""
+    if not place:
+        return ""
     from kb import Actionary
     from kb.corrections import claims
 
@@ -256,24 +249,22 @@ def _store(observation: "Observation", place: str, *, name: str, wait_s: float) 
     )
 
 
-def _print(observation: "Observation", *, json: bool, script: bool, pars: bool) -> None:
-    from capar.views.tables import par_text
-
+def _print(observation: "Observation", *, json: bool = False, script: bool, pars: bool) -> None:
     if json:
         from capar.model.json_form import to_json
 
         typer.echo(to_json(observation), nl=False)
-        return
-    if script:
+    elif script:
         from capar.views.script import script as written_script
 
         typer.echo(written_script(observation), nl=False)
-        return
-    _tables(observation)
-    if pars:
-        for par in (observation.complex_par, *observation.upars, *observation.ipars):
-            typer.echo()
-            typer.echo(par_text(par), nl=False)
+    else:
+        from capar.views.tables import par_text
+
+        _tables(observation)
+        every = (observation.complex_par, *observation.upars, *observation.ipars)
+        for par in every if pars else ():
+            typer.echo(f"\n{par_text(par)}", nl=False)
 
 
 def _tables(observation: "Observation") -> None:
@@ -291,11 +282,7 @@ def _tables(observation: "Observation") -> None:
     )
 
     if sys.stdout.isatty():
-        from rich.console import Console
-
-        console = Console()
-        console.print(segments_table(observation))
-        console.print(steps_table(observation.complex_par))
+        console().print(segments_table(observation), steps_table(observation.complex_par))
     else:
         for rows in (segment_rows(observation), step_rows(observation.complex_par)):
             typer.echo("\n".join(aligned(rows)) + "\n")
@@ -308,7 +295,7 @@ def _tables(observation: "Observation") -> None:
 
 def _draw(
     observation: "Observation", capture: "Capture", measurements: "Measurements", path: Path
-) -> str:
+) -> None:
     from capar.views.picture import draw
 
     speeds = {
@@ -316,9 +303,7 @@ def _draw(
         for link in observation.links
     }
     lost = {name: each.lost for name, each in measurements.bodies.poses.items()}
-    with written(path) as draft:
-        draw(observation, speeds, path=draft, lost=lost)
-    return f"drew {path}"
+    save(path, lambda draft: draw(observation, speeds, path=draft, lost=lost), "drew")
 
 
 def _fail_on_unknown(observation: "Observation") -> None:
@@ -341,7 +326,7 @@ def _ask_for_names(observation: "Observation", folder: Path) -> bool:
     for features, segment in unknown.items():
         typer.echo(unknown_note(segment), err=True)
         while True:
-            answer = typer.prompt(question, default="", err=True).strip()
+            answer = typer.prompt(question, default="", show_default=False, err=True).strip()
             if not answer or ACTION_NAME.fullmatch(answer):
                 break
             typer.echo("A name reads like MoveObjTo: letters and digits, capital first.", err=True)
@@ -356,16 +341,12 @@ def _ask_for_names(observation: "Observation", folder: Path) -> bool:
 class _Live:
     """What the options say of live observation."""
 
-    source: str
-    """The capture that is replayed; empty with a device."""
-
+    source: str  # the capture that is replayed; empty with a device
     device: str
     rig: str
     calibration: Path | None
     lead_in_s: float
-    speed: float
-    """How many times as fast as recorded a capture is replayed; 0: as fast as it goes."""
-
+    speed: float  # how many times as fast as recorded a capture is replayed; 0: as fast as it goes
     json: bool
     name: str
     websocket: int | None
@@ -390,57 +371,43 @@ class _Live:
 
 def _observe_live(options: _Live, rules: "Profile") -> "Observation":
     """Observe until the source ends or the user interrupts."""
-    from capar.pipelines.live.frames import lead_in, replayed
-    from capar.pipelines.live.observer import LiveObserver
-    from extractors.calibration import calibrate
-    from extractors.readers.bundle.capture_toml import read_capture
-
-    if options.device:
-        return _observe_device(options, rules)
-    trial = read_capture(options.source)
-    known = _stored(options.calibration)
-    if known is None:
-        known = calibrate(lead_in(trial, options.lead_in_s) if options.lead_in_s > 0.0 else trial)
-    observer = LiveObserver(trial, known, rules=rules, name=options.name, sentences=True)
-    return _run(observer, _paced(replayed(trial), options.speed), options)
-
-
-def _observe_device(options: _Live, rules: "Profile") -> "Observation":
-    from capar.pipelines.live.frames import DeviceFrames, body_names, capture_of
+    from capar.pipelines.live.frames import DeviceFrames, capture_of, lead_in, paced, replayed
     from capar.pipelines.live.observer import LiveObserver
     from extractors.calibration import calibrate
     from extractors.devices.drivers import find_tracker
     from extractors.readers.bundle.capture_toml import read_capture
-    from extractors.signals.intervals import time_step
 
+    known, name, least_s = _stored(options.calibration), options.name, options.lead_in_s
+    if not options.device:
+        trial = read_capture(options.source)
+        known = known or calibrate(lead_in(trial, least_s) if least_s > 0.0 else trial)
+        observer = LiveObserver(trial, known, rules=rules, name=name, sentences=True)
+        return _run(observer, paced(replayed(trial), options.speed), options)
     rig = read_capture(options.rig)
-    rig = replace(rig, name=options.name or "live", sources=(), notices=())
-    known = _stored(options.calibration)
+    rig = replace(rig, name=name or "live", sources=(), notices=())
     with find_tracker(options.device) as tracker:
-        told = tracker.describe()
-        own_s = 1.0 / told.rate_hz if told.rate_hz > 0.0 else time_step(rig.times)
-        step_s = known.step_s if known else own_s
-        frames = DeviceFrames(rig, body_names(rig), told, step_s)
-
-        def batches() -> "Iterator[list[Poses]]":
-            heard = 0
-            while True:
-                yield [each for frame in tracker.poll(0.1) for each in frames.poses(frame)]
-                for event in tracker.events[heard:]:
-                    typer.echo(event.message, err=True)
-                heard = len(tracker.events)
-
-        source = batches()
+        frames = DeviceFrames(rig, tracker.describe(), known.step_s if known else None)
+        source = _batches(tracker, frames)
         first: list[Poses] = []
         if known is None:
-            typer.echo(f"calibrating by {options.lead_in_s:g} s: act as usual", err=True)
-            while len(first) * step_s < options.lead_in_s:
+            typer.echo(f"calibrating by {least_s:g} s: act as usual", err=True)
+            while len(first) * frames.step_s < least_s:
                 first += next(source)
             known = calibrate(capture_of(rig, first))
-        observer = LiveObserver(rig, known, rules=rules, name=options.name, sentences=True)
-        seen = _run(observer, (batch for some in ([first], source) for batch in some), options)
-        typer.echo(f"{observer.frames} frames, {frames.filled} of them lost on the way", err=True)
+        observer = LiveObserver(rig, known, rules=rules, name=name, sentences=True)
+        seen = _run(observer, chain([first], source), options)
+    typer.echo(f"{observer.frames} frames, {frames.filled} of them lost on the way", err=True)
     return seen
+
+
+def _batches(tracker: "LiveTracker", frames: "DeviceFrames") -> "Iterator[list[Poses]]":
+    """What a tracker sends, again and again; what happens to it is printed."""
+    heard = 0
+    while True:
+        yield [each for frame in tracker.poll(0.1) for each in frames.poses(frame)]
+        for event in tracker.events[heard:]:
+            typer.echo(event.message, err=True)
+        heard = len(tracker.events)
 
 
 def _stored(path: Path | None) -> "Calibration | None":
@@ -459,25 +426,8 @@ def _stored(path: Path | None) -> "Calibration | None":
     return found
 
 
-def _paced(frames: "list[Poses]", speed: float) -> "Iterator[list[Poses]]":
-    """The frames that are due, again and again, at a speed; one at a time as fast as it goes."""
-    if speed <= 0.0:
-        yield from ([each] for each in frames)
-        return
-    started, sent = time.monotonic(), 0
-    while sent < len(frames):
-        due_s = (time.monotonic() - started) * speed + frames[0].time_s
-        upto = sent
-        while upto < len(frames) and frames[upto].time_s <= due_s:
-            upto += 1
-        if upto == sent:
-            time.sleep(WAIT_S)
-        yield frames[sent:upto]
-        sent = upto
-
-
 def _run(
-    observer: "LiveObserver", batches: "Iterator[list[Poses]]", options: _Live
+    observer: "LiveObserver", batches: "Iterable[list[Poses]]", options: _Live
 ) -> "Observation":
     """Print events until the source ends or Ctrl-C; then settle what is left."""
     from capar.model.json_form import to_json
@@ -523,21 +473,8 @@ def _programs(options: _Live, opened: ExitStack) -> Iterator[Callable[[str], Non
 def _print_events(
     events: "list[SegmentEvent]", options: _Live, sends: list[Callable[[str], None]]
 ) -> None:
-    from capar.pipelines.live.ledgers import event_row
-
     for event in events:
-        line = codec.dumps(event_row(event), ensure_ascii=False)
-        typer.echo(line if options.json else _line(event))
+        line = codec.dumps(event.row(), ensure_ascii=False)
+        typer.echo(line if options.json else event)
         for send in sends:
             send(line)
-
-
-def _line(event: "SegmentEvent") -> str:
-    segment = event.segment
-    what = event.sentence or f"{segment.name}({', '.join(segment.objects)})"
-    if event.status == "purpose":
-        what = f"{segment.name}: for {segment.purpose}"
-    return (
-        f"{event.time_s:7.2f}  {event.status.value:12} {segment.ee}/{segment.index}".ljust(38)
-        + f"{segment.start_s:6.2f}-{segment.end_s:<6.2f}   {what}"
-    )

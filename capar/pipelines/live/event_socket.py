@@ -33,14 +33,19 @@ class EventSocket:
     """
 
     def __init__(self, port: int) -> None:
-        serve = _serve()
+        try:
+            from websockets.sync.server import serve
+        except ImportError as error:
+            raise DeviceError(
+                f"the library of websockets is not installed ({error}); install capar[live]"
+            ) from None
         self._lock = threading.Lock()
         self._latest: deque[str] = deque(maxlen=LATEST)
         self._listeners: dict[Any, queue.Queue[str | None]] = {}
         self._threads: set[threading.Thread] = set()
         self._closed = False
         try:
-            self._server: Any = serve(self._told, HOST, port, origins=ORIGINS)
+            self._server: Any = serve(self._serve, HOST, port, origins=ORIGINS)
         except OSError as error:
             raise DeviceError(
                 f"no websocket at {HOST}:{port} ({error.strerror}); name another port, or 0 for "
@@ -78,7 +83,7 @@ class EventSocket:
         self._server.shutdown()
         self._thread.join(LAST_S)
 
-    def _told(self, connection: Any) -> None:
+    def _serve(self, connection: Any) -> None:
         """Send events to one program until the recording ends or it leaves."""
         from websockets.exceptions import ConnectionClosed
 
@@ -99,13 +104,3 @@ class EventSocket:
             with self._lock:
                 self._listeners.pop(connection, None)
                 self._threads.discard(threading.current_thread())
-
-
-def _serve() -> Any:
-    try:
-        from websockets.sync.server import serve
-    except ImportError as error:
-        raise DeviceError(
-            f"the library of websockets is not installed ({error}); install capar[live]"
-        ) from None
-    return serve

@@ -30,23 +30,19 @@ from capar_rules.pars.inference import Inference
 
 
 class Status(StrEnum):
-    """How sure an announcement is."""
+    """How sure an announcement is.
+
+    A segment is ``provisional`` when it has ended and later frames may still change it, ``revised``
+    when it is announced otherwise than before, ``withdrawn`` when what was announced goes on or is
+    part of another segment, and ``settled`` when name, objects, begin and end are final. A
+    ``purpose`` is what a settled segment was for: where nobody states one, the action that follows.
+    """
 
     PROVISIONAL = "provisional"
-    """The segment has ended; later frames may still change it."""
-
     REVISED = "revised"
-    """It is told otherwise than it was announced, within the horizon."""
-
     WITHDRAWN = "withdrawn"
-    """What was announced as ended goes on, or is part of another segment."""
-
     SETTLED = "settled"
-    """It is told for good: name, objects, begin and end."""
-
     PURPOSE = "purpose"
-    """What a settled segment was for, now that the next one is settled: where nobody states a
-    purpose, it is the action that follows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,22 +64,33 @@ class SegmentEvent:
         """How long after the end of the segment it was announced [s]."""
         return self.time_s - self.segment.end_s
 
+    def row(self) -> dict[str, Any]:
+        """The announcement as one JSON object; times in seconds since the first frame."""
+        segment = self.segment
+        return {
+            "event": self.status.value,
+            "segment": f"{segment.ee}/{segment.index}",
+            "name": segment.name,
+            "objects": list(segment.objects),
+            "purpose": segment.purpose,
+            "start_s": round(segment.start_s, 6),
+            "end_s": round(segment.end_s, 6),
+            "time_s": round(self.time_s, 6),
+            "late_s": round(self.late_s, 6),
+            "sentence": self.sentence,
+        }
 
-def event_row(event: SegmentEvent) -> dict[str, Any]:
-    """An announcement as one JSON object; times in seconds since the first frame."""
-    segment = event.segment
-    return {
-        "event": event.status.value,
-        "segment": f"{segment.ee}/{segment.index}",
-        "name": segment.name,
-        "objects": list(segment.objects),
-        "purpose": segment.purpose,
-        "start_s": round(segment.start_s, 6),
-        "end_s": round(segment.end_s, 6),
-        "time_s": round(event.time_s, 6),
-        "late_s": round(event.late_s, 6),
-        "sentence": event.sentence,
-    }
+    def __str__(self) -> str:
+        """A line for people."""
+        segment = self.segment
+        what = self.sentence or f"{segment.name}({', '.join(segment.objects)})"
+        if self.status is Status.PURPOSE:
+            what = f"{segment.name}: for {segment.purpose}"
+        address = f"{segment.ee}/{segment.index}"
+        return (
+            f"{self.time_s:7.2f}  {self.status.value:12} {address}".ljust(38)
+            + f"{segment.start_s:6.2f}-{segment.end_s:<6.2f}   {what}"
+        )
 
 
 Key = tuple[object, ...]  # What an interval is of: its kind and its bodies, whenever it is.
@@ -93,8 +100,6 @@ AT_THE_END = (ReleaseSpeed, Rides)
 OF_A_MOTION = (Reverses, DrawsBack, Phase)
 """Kinds that are sought within a motion as a whole: that a thing has come down tells where it was
 highest. They are settled with the motion."""
-
-FRAMES = ("frame", "first", "last")
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,22 +147,35 @@ class FactLedger:
             or (at := fact.ends()[0] + begin) > self.frontier
             or (at in late and (_key(fact), at) not in self._told)
         ]
-        firsts = self._firsts(seen)
-        own = {(_key(fact), fact.ends()[0]) for fact in seen if _is_interval(fact)}
-        continued = {place for place in own if firsts.get(place, place[1]) != place[1]}
-        ended = {(_key(fact), fact.ends()[0]) for fact in seen if self._has_ended(fact)}
+        firsts: dict[tuple[Key, int], int] = {}
+        ended: set[tuple[Key, int]] = set()
+        for fact in seen:
+            if fact.declaration.span is Span.INTERVAL:
+                place, known = (_key(fact), fact.ends()[0]), self._continued(fact)
+                if known is not None:
+                    firsts[place] = known.first
+                elif fact.ends()[-1] <= self.frontier:
+                    ended.add(place)
+        continued = {place for place, first in firsts.items() if first != place[1]}
         out: list[Observed] = []
         for fact in seen:
             span = fact.declaration.span
             if span is Span.INSTANT:
                 out.append(fact)
-            elif span is Span.INTERVAL and (not self._has_ended(fact) or self._is_late(fact)):
-                out.append(_begun(fact, firsts.get((_key(fact), fact.ends()[0]))))
+                continue
+            if span is Span.INTERVAL:
+                place = (_key(fact), fact.ends()[0])
+                skipped = place in ended and not self._is_late(fact)
             elif not isinstance(span, Span):
                 place = (_key_of_named(fact), fact.ends()[0])
-                if place in ended or (place in continued and not isinstance(fact, AT_THE_END)):
-                    continue
-                out.append(_begun(fact, firsts.get(place)))
+                named_later = place in continued and not isinstance(fact, AT_THE_END)
+                skipped = place in ended or named_later
+            else:
+                continue
+            if not skipped:
+                first = firsts.get(place)
+                begun = fact if first is None else replace(cast(Any, fact), first=first)
+                out.append(cast(Observed, begun))
         for key, _ in continued:
             out += [each for each in self._open[key].named if not isinstance(each, AT_THE_END)]
         return list(dict.fromkeys(out))
@@ -201,21 +219,12 @@ class FactLedger:
         self._told = {told for told in self._told if told[1] >= oldest}
         return done
 
-    def _firsts(self, seen: Iterable[Observed]) -> dict[tuple[Key, int], int]:
-        """The true first frames of intervals that were going on at the frontier."""
-        out: dict[tuple[Key, int], int] = {}
-        for fact in seen:
-            known = self._continued(fact)
-            if known is not None:
-                out[_key(fact), fact.ends()[0]] = known.first
-        return out
-
     def _continued(self, fact: Observed) -> _Open | None:
-        """The interval that went on at the frontier and that a fact tells of; None without one.
+        """The interval that went on at the frontier and of which a fact is; None without one.
 
-        Its end may be told a frame sooner than before, and so be at the frontier or before it.
+        Its end may be measured a frame sooner than before, and so be at the frontier or before it.
         """
-        if not _is_interval(fact) or fact.ends()[0] > self.frontier:
+        if fact.ends()[0] > self.frontier:
             return None
         known = self._open.get(_key(fact))
         return known if known is not None and fact.ends()[-1] >= known.first else None
@@ -226,15 +235,6 @@ class FactLedger:
             return False
         motion = self._open.get((Moving, fact.object))
         return motion is not None and fact.ends()[0] >= motion.first
-
-    def _has_ended(self, fact: Observed) -> bool:
-        """Whether it is an interval that was settled before."""
-        ended = _is_interval(fact) and fact.ends()[-1] <= self.frontier
-        return ended and self._continued(fact) is None
-
-
-def _is_interval(fact: Observed) -> bool:
-    return fact.declaration.span is Span.INTERVAL
 
 
 def _key(fact: Observed) -> Key:
@@ -247,7 +247,7 @@ def _key(fact: Observed) -> Key:
 def _layout(kind: type[Observed]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The fields of a kind of fact that hold text, and those that hold frames."""
     known = get_annotations(kind)
-    frames = () if kind.declaration.span is Span.ALWAYS else FRAMES
+    frames = () if kind.declaration.span is Span.ALWAYS else ("frame", "first", "last")
     texts = tuple(name for name, of in known.items() if of is str)
     return texts, tuple(name for name in known if name in frames)
 
@@ -266,18 +266,14 @@ def _moved(fact: Observed, by: int) -> Observed:
     return cast(Observed, replace(cast(Any, fact), **changed))
 
 
-def _begun(fact: Observed, first: int | None) -> Observed:
-    return fact if first is None else cast(Observed, replace(cast(Any, fact), first=first))
-
-
 @dataclass
 class _Link:
+    recent: deque[Segment]
+    """The last settled segments, in time."""
+
     count: int = 0
     end: int = 0
     """The last frame of the last settled segment."""
-
-    recent: deque[Segment] = field(default_factory=deque)
-    """The last settled segments, in time."""
 
     announced: dict[int, Segment] = field(default_factory=dict)
     due: tuple[int, ...] = ()
@@ -340,10 +336,16 @@ class SegmentLedger:
         """
         events: list[SegmentEvent] = []
         for link in inference.links:
-            own = self._links.setdefault(link.ee, _Link())
+            own = self._links.setdefault(link.ee, _Link(deque(maxlen=self._kept)))
             found = list(_unsettled(own, link, rate_hz))
             if found and own.recent and self._due(found[0]) <= frontier:
-                events += _purposes(own, link, time_s)
+                known = own.recent[-1]
+                did = (known.name, known.objects, known.last)
+                same = (s for s in link.segments if (s.name, s.objects, s.last) == did)
+                purpose = next((s.purpose for s in same if s.purpose != known.purpose), None)
+                if purpose is not None:
+                    own.recent[-1] = replace(known, purpose=purpose)
+                    events.append(SegmentEvent(Status.PURPOSE, own.recent[-1], time_s))
             settled = 0
             for segment in found:
                 if segment.last >= undecided.get(link.ee, now + 1):
@@ -355,8 +357,6 @@ class SegmentLedger:
                 own.announced.pop(segment.index, None)
                 own.count, own.end = segment.index + 1, segment.last
                 own.recent.append(segment)
-                if len(own.recent) > self._kept:
-                    own.recent.popleft()
             latest = max(self._later.values(), default=0)
             own.due = tuple(each.last + latest for each in found[settled:] if each.last < now)
             upto = min(ended, unseen.get(link.ee, now + 1) - 1)
@@ -384,23 +384,12 @@ def _unsettled(own: _Link, link: ObservedLink, rate_hz: float) -> Iterator[Segme
         index, begin = index + 1, segment.last
 
 
-def _purposes(own: _Link, link: ObservedLink, time_s: float) -> Iterator[SegmentEvent]:
-    """The last settled segment with what it was for, where that was not known before."""
-    known = own.recent[-1]
-    for latest in link.segments:
-        same = (latest.name, latest.objects, latest.last) == (known.name, known.objects, known.last)
-        if same and latest.purpose != known.purpose:
-            own.recent[-1] = replace(known, purpose=latest.purpose)
-            yield SegmentEvent(Status.PURPOSE, own.recent[-1], time_s)
-            return
-
-
 def _announced(own: _Link, ended: dict[int, Segment], time_s: float) -> Iterator[SegmentEvent]:
     for index, segment in ended.items():
         before = own.announced.get(index)
         if before is None:
             yield SegmentEvent(Status.PROVISIONAL, segment, time_s)
-        elif _content(before) != _content(segment):
+        elif any(getattr(before, name) != getattr(segment, name) for name in CONTENT):
             yield SegmentEvent(Status.REVISED, segment, time_s)
     for index, segment in own.announced.items():
         if index not in ended and index >= own.count:
@@ -408,9 +397,8 @@ def _announced(own: _Link, ended: dict[int, Segment], time_s: float) -> Iterator
     own.announced = dict(ended)
 
 
-def _content(segment: Segment) -> tuple[object, ...]:
-    return segment.name, segment.objects, segment.first, segment.last
-
+CONTENT = ("name", "objects", "first", "last")
+"""What of a segment is announced again where it differs."""
 
 SAME_PLACE_MM = 10  # Postures at rest nearer to each other than this along every axis are one [mm].
 
@@ -443,13 +431,13 @@ class RuleMemory:
             borders: Frames at which segments begin that go on; what ends near them is kept.
             margin: How many frames away is near.
         """
-        at = sorted(borders)
-        kept: list[Observed] = []
-        gone: list[Observed] = []
+        at, kept, gone = sorted(borders), list[Observed](), list[Observed]()
         for fact in self._facts:
             ends = fact.ends()
-            needed = ends[-1] >= begin - margin or any(_is_near(end, at, margin) for end in ends)
-            (kept if needed else gone).append(fact)
+            # The first border that is not more than the margin before each end.
+            after = ((end, bisect_left(at, end - margin)) for end in ends)
+            near = any(index < len(at) and at[index] <= end + margin for end, index in after)
+            (kept if near or ends[-1] >= begin - margin else gone).append(fact)
         self._facts = kept
         if gone:
             self._remember(gone)
@@ -480,9 +468,3 @@ class RuleMemory:
                 axes = (axis for place in posture for axis in (place.x, place.y, place.z))
                 cell = tuple(round(axis / SAME_PLACE_MM) for axis in axes)
                 self._postures.setdefault((fact.ee, *cell), (fact, *posture, *met))
-
-
-def _is_near(frame: int, borders: Sequence[int], margin: int) -> bool:
-    """Whether one of some frames in order is so near to a frame."""
-    following = bisect_left(borders, frame - margin)
-    return following < len(borders) and borders[following] <= frame + margin

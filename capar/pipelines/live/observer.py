@@ -28,7 +28,7 @@ from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import ComplexPar
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.pipelines.live.carried import Carried
-from capar.pipelines.live.frames import FrameBuffer, Poses, RecordedFrames, Window
+from capar.pipelines.live.frames import FrameBuffer, Poses, Window, body_rows
 from capar.pipelines.live.ledgers import FactLedger, RuleMemory, SegmentEvent, SegmentLedger
 from capar.pipelines.live.rule_process import RuleProcess
 from capar.pipelines.live.undecided import Handling, awaited, decided_at, nameless, undecided
@@ -167,8 +167,7 @@ class LiveObserver:
         self._step_s = calibration.step_s
         self._rate_mhz = round(1000.0 / self._step_s)
         longest = self._frames(self.horizons.motion_s) + self._frames(self.horizons.grain_s) + 1
-        self._buffer = FrameBuffer(rig, longest)
-        self._recorded = RecordedFrames(rig) if keep_result else None
+        self._buffer = FrameBuffer(rig, longest, kept=keep_result)
         self._facts = FactLedger()
         self._carried = Carried(calibration, self._frames(self.horizons.rest_s))
         self._memory = RuleMemory()
@@ -181,17 +180,12 @@ class LiveObserver:
         self._words = primitive_words(primitive_files(self.rules.added)) if sentences else None
         seek_rooms((each.shape for each in rig.objects if each.shape), thresholds_of(calibration))
         self._answers = EarlierAnswers()
-        self._first_motion = FirstMotion(calibration, self._buffer.streams)
+        self._first_motion = FirstMotion(calibration, body_rows(rig))
         self._stirs = False
         self._lasting: int | None = None
         self._measured = 0
         self._frontier = -1
         self._forgotten = 0
-
-    @property
-    def bodies(self) -> tuple[str, ...]:
-        """The bodies of a frame's rows, in order."""
-        return self._buffer.bodies
 
     @property
     def frames(self) -> int:
@@ -207,8 +201,6 @@ class LiveObserver:
         events: list[SegmentEvent] = []
         for poses in frames:
             self._buffer.push(poses)
-            if self._recorded is not None:
-                self._recorded.push(poses)
             self._stirs = self._stirs or self._first_motion.is_seen(poses)
             if self.frames - self._measured >= self._frames(self.horizons.window_s) // 2:
                 events += self._evaluate(last=False)
@@ -224,9 +216,9 @@ class LiveObserver:
         """
         events = self._evaluate(last=True)
         self.rules_process.close()
-        if self._recorded is None:
+        capture = self._buffer.recording()
+        if capture is None:
             return events, None
-        capture = self._recorded.capture()
         measurements = measure(capture, self.calibration)
         return events, observe_measured(capture, measurements, rules=self.rules, name=self._name)
 
@@ -270,10 +262,10 @@ class LiveObserver:
             and not fact.ends()
             and not isinstance(fact, Frames | RateMhz)
         ]
-        facts: list[Fact] = [Frames(0, window.last), RateMhz(self._rate_mhz), *always]
-        inference = self.rules_process.ask([*facts, *self._memory, *recent])
-        handling = self._handling(measurements, recent, window)
         told = (*self._memory, *recent)
+        facts: list[Fact] = [Frames(0, window.last), RateMhz(self._rate_mhz), *always, *told]
+        inference = self.rules_process.ask(facts)
+        handling = self._handling(measurements, told, window)
         sure = kept if last else min(kept, handling.sure)
         self._memory.add(self._facts.settle(recent, max(sure, self._facts.frontier)))
         self._first_motion.await_(window, awaited(handling))
@@ -285,7 +277,7 @@ class LiveObserver:
             undecided=handling.with_margin(undecided(handling)),
             unseen=handling.with_margin(nameless(handling)),
             rate_hz=self._rate_mhz / 1000.0,
-            time_s=self._buffer.time_s(window.last),
+            time_s=float(window.capture.times[-1]),
         )
         self._frontier = frontier
         self._lasting = self._next_lasting(recent, decided_at(handling), window.last)
@@ -312,10 +304,9 @@ class LiveObserver:
         return self._buffer.window(self.frames - begin)
 
     def _handling(
-        self, measurements: Measurements, recent: list[Observed], window: Window
+        self, measurements: Measurements, facts: Sequence[Observed], window: Window
     ) -> Handling:
         """What is touched, moves and is lost, where later frames may decide."""
-        facts = (*self._memory, *recent)
         rig = self._buffer.rig
         acting = {sensor.name for sensor in rig.acting}
         fixed = {each.name for each in rig.objects if each.tag is TagType.FIXED}

@@ -5,14 +5,12 @@ would fill some hundred megabytes. So a process of its own is asked, which anoth
 time. The first minutes need none: to start one takes as long as some answers.
 
 Run as a program this module is such a worker: a pickled profile comes in, then one pickled list of
-facts after the other; for each list a pickled pair goes out of the answer, or the error that it
-raised, and the processor time of the worker [s].
+facts after the other; for each list the pickled answer goes out, or the error that it raised.
 """
 
 import pickle
 import subprocess
 import sys
-import time
 import weakref
 from collections.abc import Sequence
 from contextlib import suppress
@@ -64,12 +62,6 @@ class RuleProcess:
         self._asks = asks
         self._worker: _Worker | None = None
         self._next: _Worker | None = None
-        self._spent_s = 0.0
-
-    @property
-    def spent_s(self) -> float:
-        """The processor time of all workers [s]."""
-        return self._spent_s + (self._worker.spent_s if self._worker else 0.0)
 
     @property
     def worker(self) -> int | None:
@@ -104,7 +96,7 @@ class RuleProcess:
             except _EndedError:
                 # Until another one takes over, this process answers itself; for good, if none can
                 # be started here.
-                starts = self._worker.spent_s > 0.0
+                starts = self._worker.answered
                 self._end_worker()
                 self._left = min(self._left, AHEAD) if starts else sys.maxsize
         return inferred(facts, self._rules)
@@ -119,7 +111,6 @@ class RuleProcess:
     def _end_worker(self) -> None:
         if self._worker is not None:
             self._worker.warming.join()
-            self._spent_s += self._worker.spent_s
             self._worker.end()
         self._worker = None
 
@@ -137,7 +128,7 @@ class _Worker:
         self.process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
         )
-        self.spent_s = 0.0
+        self.answered = False
         self.end = weakref.finalize(self, _end, self.process)
         self.warming = Thread(target=self._warm, args=(rules, tuple(facts)), daemon=True)
         self.warming.start()
@@ -152,7 +143,8 @@ class _Worker:
         assert self.process.stdout is not None
         try:
             self._send(tuple(facts))
-            answer, self.spent_s = pickle.load(self.process.stdout)
+            answer = pickle.load(self.process.stdout)
+            self.answered = True
         except (EOFError, BrokenPipeError, pickle.UnpicklingError):
             raise _EndedError from None
         if isinstance(answer, CaparError):
@@ -167,8 +159,7 @@ class _Worker:
 
 
 def _end(process: "subprocess.Popen[bytes]") -> None:
-    assert process.stdin is not None
-    assert process.stdout is not None
+    assert process.stdin is not None and process.stdout is not None
     with suppress(BrokenPipeError):
         process.stdin.close()
     process.stdout.close()
@@ -179,18 +170,16 @@ def _serve() -> None:
     """Answer until nothing more is asked."""
     asked, answered = sys.stdin.buffer, sys.stdout.buffer
     rules: Profile = pickle.load(asked)
-    while True:
-        try:
+    with suppress(EOFError):
+        while True:
             facts: Sequence[Fact] = pickle.load(asked)
-        except EOFError:
-            return
-        answer: Inference | CaparError
-        try:
-            answer = inferred(facts, rules)
-        except CaparError as error:
-            answer = error
-        pickle.dump((answer, time.process_time()), answered, protocol=pickle.HIGHEST_PROTOCOL)
-        answered.flush()
+            answer: Inference | CaparError
+            try:
+                answer = inferred(facts, rules)
+            except CaparError as error:
+                answer = error
+            pickle.dump(answer, answered, protocol=pickle.HIGHEST_PROTOCOL)
+            answered.flush()
 
 
 if __name__ == "__main__":

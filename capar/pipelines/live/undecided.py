@@ -10,57 +10,46 @@ from extractors.measure import Arriving
 
 @dataclass(frozen=True, slots=True)
 class Handling:
-    """What end-effectors touch and what moves, up to the newest frame."""
+    """What end-effectors touch and what moves, up to the newest frame.
+
+    Attributes:
+        touching: Contacts of end-effectors.
+        moving: Motions of objects.
+        mobile: Names of the objects that can be moved.
+        last: The newest frame.
+        margin: Frames that events of one kind are apart at most.
+        longest: How many frames a decision is awaited at most.
+        lost: Of each body that is not seen now, the last frame in which it was.
+        swings: When objects move to and fro.
+        stroke: How many frames one way of moving to and fro takes at most.
+        displaced: The motions from when objects truly set off.
+        fresh: Frames for which a motion that has just begun may yet turn out to be none.
+        lingering: Bodies whose contact may have gone on, as they are near each other, or one is out
+            of sight, and the last frame in which they were seen to touch.
+        leans: When objects lean far over.
+        arriving: Objects that have just come to rest, where and when is not measured yet.
+        fast: Contacts that began as fast as a blow: end-effector, object, first frame.
+        laid: Contacts of objects that can be moved with what is fixed.
+        limbs: What limb an end-effector is of, where it is of one.
+    """
 
     touching: Sequence[Touching]
-    """Contacts of end-effectors."""
-
     moving: Sequence[Moving]
     mobile: AbstractSet[str]
-    """Names of the objects that can be moved."""
-
     last: int
-    """The newest frame."""
-
     margin: int
-    """Frames that events of one kind are apart at most."""
-
     longest: int
-    """How many frames a decision is awaited at most."""
-
     lost: Mapping[str, int] = field(default_factory=dict)
-    """Of each body that is not seen now, the last frame in which it was."""
-
     swings: Sequence[Swings] = ()
-    """When things move to and fro."""
-
     stroke: int = 0
-    """How many frames one way of moving to and fro takes at most."""
-
     displaced: Sequence[Displaced] = ()
-    """The motions from when things truly set off."""
-
     fresh: int = 0
-    """Frames for which a motion that has just begun may yet turn out to be none."""
-
     lingering: Mapping[tuple[str, str], int] = field(default_factory=dict)
-    """Bodies whose contact may have gone on, as they are near each other, or one is out of sight,
-    and the last frame in which they were seen to touch."""
-
     leans: Sequence[Leans] = ()
-    """When things lean far over."""
-
     arriving: Mapping[str, Arriving] = field(default_factory=dict)
-    """Objects that have just come to rest, where and when is not told yet."""
-
     fast: AbstractSet[tuple[str, str, int]] = frozenset()
-    """Contacts that began as fast as a blow: end-effector, object, first frame."""
-
     laid: Sequence[Touching] = ()
-    """Contacts of objects that can be moved with what is fixed."""
-
     limbs: Mapping[str, object] = field(default_factory=dict)
-    """What limb an end-effector is of, where it is of one."""
 
     @property
     def sure(self) -> int:
