@@ -25,9 +25,7 @@ LABEL_COLUMNS = ("link", "start_s", "end_s", "label", "object")
 def new_agent(
     name: Annotated[str, Argument(help="What the agent is called.")],
     kind: Annotated[str, Option(help="Its kind: man, woman, robot ...")] = "",
-    can: Annotated[
-        list[str] | None, Option(help="An action that it is able to do; may be repeated.")
-    ] = None,
+    can: Annotated[list[str] | None, Option(help="An ability; may be repeated.")] = None,
     wait: Wait = 0.0,
     actionary: Place = None,
     json: Json = False,
@@ -159,20 +157,16 @@ def _declare(
 
 
 def correct(
-    segment: Annotated[
-        str, Argument(help="CAPTURE/END_EFFECTOR/INDEX; CAPTURE alone prints what was done in it.")
-    ],
+    segment: Annotated[str, Argument(help="CAPTURE/END_EFFECTOR/INDEX, or CAPTURE to print all.")],
     name: Annotated[str, Option(help="What was done in it.")] = "",
     start: Annotated[float | None, Option(metavar="SECONDS", help="When it began.")] = None,
     end: Annotated[float | None, Option(metavar="SECONDS", help="When it ended.")] = None,
     split: Annotated[
-        float | None, Option(metavar="SECONDS", help="It is two, of which one ends here.")
+        float | None, Option(metavar="SECONDS", help="Where it is split in two.")
     ] = None,
     join: Annotated[bool, Option("--join", help="It is one with the next.")] = False,
     by: Annotated[str, Option(metavar="PERSON", help="Who says so.")] = "",
-    labels: Annotated[
-        Path | None, Option(help="Write what was done as labels, a CSV table, to this file.")
-    ] = None,
+    labels: Annotated[Path | None, Option(help="Write labels to this CSV file.")] = None,
     json: Json = False,
     wait: Wait = 0.0,
     actionary: Place = None,

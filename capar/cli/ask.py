@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from kb.store.answers import Answer
 
 
+TimeLimit = Annotated[float, Option(metavar="SECONDS", help="How long a query may take.")]
+
+
 def _names(incomplete: str) -> list[tuple[str, str]]:
     """Names of questions that begin so, for the shell."""
     from kb.queries.questions import questions
@@ -35,7 +38,7 @@ def query(
     question: Annotated[
         str | None,
         Argument(
-            help="A question's name, SPARQL, a file of SPARQL, or - for standard input.",
+            help="A question's name, SPARQL, its file, or - for standard input.",
             autocompletion=_names,
         ),
     ] = None,
@@ -50,9 +53,7 @@ def query(
     list_: Annotated[bool, Option("--list", help="List the named questions.")] = False,
     format_: Annotated[str, Option("--format", help="table, csv, json or turtle.")] = "table",
     json: Annotated[bool, Option("--json", help="The same as --format json.")] = False,
-    time_limit: Annotated[
-        float, Option(metavar="SECONDS", help="How long the question may take.")
-    ] = 30.0,
+    time_limit: TimeLimit = 30.0,
     corrected: Corrected = False,
     actionary: Place = None,
 ) -> None:
@@ -154,9 +155,7 @@ def show(
 
 
 def check(
-    shacl: Annotated[
-        bool, Option("--shacl", help="Have pySHACL check every observation as well; minutes.")
-    ] = False,
+    shacl: Annotated[bool, Option("--shacl", help="Have pySHACL check too; minutes.")] = False,
     json: Json = False,
     actionary: Place = None,
 ) -> None:
@@ -184,12 +183,8 @@ def serve(
         "127.0.0.1"
     ),
     port: Annotated[int, Option(min=0, max=65535, help="0 takes any free one.")] = 7879,
-    token: Annotated[
-        str, Option(envvar="CAPAR_TOKEN", help="Let clients that bear this token add statements.")
-    ] = "",
-    time_limit: Annotated[
-        float, Option(metavar="SECONDS", help="How long a query may take.")
-    ] = 30.0,
+    token: Annotated[str, Option(envvar="CAPAR_TOKEN", help="Who has it may add statements.")] = "",
+    time_limit: TimeLimit = 30.0,
     actionary: Place = None,
 ) -> None:
     """Answer SPARQL and named questions over HTTP.

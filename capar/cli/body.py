@@ -24,24 +24,12 @@ OPEN_HAND = ("knuckle", "finger", "thumb")
 def fit(
     capture: Capture,
     json: Json = False,
-    bvh: Annotated[
-        Path | None, Option(help="Write the skeleton's motion: BVH, y up, centimetres.")
-    ] = None,
-    glb: Annotated[
-        Path | None, Option(help="Write the moving mannequin: binary glTF, y up, metres.")
-    ] = None,
-    c3d: Annotated[
-        Path | None, Option(help="Write the segments' poses: C3D, ROTATION data, z up, mm.")
-    ] = None,
-    npz: Annotated[
-        Path | None, Option(help="Write postures, joint angles and poses as NumPy arrays.")
-    ] = None,
-    csv: Annotated[
-        Path | None, Option(help="Write the pelvis's pose and joint angles as a table.")
-    ] = None,
-    mjcf: Annotated[
-        Path | None, Option(help="Write the body as a MuJoCo model; --npz has its qpos.")
-    ] = None,
+    bvh: Annotated[Path | None, Option(help="Write its motion: BVH, y up, cm.")] = None,
+    glb: Annotated[Path | None, Option(help="Write its surface: glTF, y up, m.")] = None,
+    c3d: Annotated[Path | None, Option(help="Write its poses: C3D, z up, mm.")] = None,
+    npz: Annotated[Path | None, Option(help="Write everything: NumPy arrays.")] = None,
+    csv: Annotated[Path | None, Option(help="Write its joint angles as a table.")] = None,
+    mjcf: Annotated[Path | None, Option(help="Write it for MuJoCo; --npz has qpos.")] = None,
 ) -> None:
     """Fit a human body to a capture, and print the residuals.
 
@@ -137,13 +125,9 @@ def perform(
         ),
     ],
     output: Annotated[Path, Option("--output", "-o", help="A new folder for the capture.")],
-    agent: Annotated[
-        str, Option(help="Who performs: man, woman or child; of two bodies such as man+woman.")
-    ] = "man",
+    agent: Annotated[str, Option(help="man, woman or child; for two such as man+woman.")] = "man",
     rate: Annotated[float, Option(help="Frames a second.", min=10.0, max=480.0)] = 60.0,
-    noisy: Annotated[
-        bool, Option("--noisy", help="With the noise and the mounts of a magnetic tracker.")
-    ] = False,
+    noisy: Annotated[bool, Option("--noisy", help="As of a magnetic tracker.")] = False,
     seed: Annotated[int, Option(help="The draw of the noise.", min=0)] = 3,
 ) -> None:
     """Let a virtual body perform an action, and write the capture.
@@ -179,17 +163,11 @@ def perform(
 
 def map_command(
     capture: Capture,
-    agent: Annotated[
-        str, Option(help="Who performs: man, woman, child, or same for the one recorded.")
-    ] = "same",
+    agent: Annotated[str, Option(help="man, woman, child, or same (as recorded).")] = "same",
     output: NewBundle = None,
     cutoff: Annotated[
         float,
-        Option(
-            help="Cutoff of the low-pass filter that takes noise from the recorded paths [Hz]; "
-            "0 follows them as they are.",
-            min=0.0,
-        ),
+        Option(min=0.0, help="Cutoff of the low-pass filter of recorded paths [Hz]; 0 for none."),
     ] = 0.0,
     assume: Assume = None,
     json: Json = False,

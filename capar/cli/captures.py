@@ -1,6 +1,6 @@
 """Look at captures: what a file holds, a first capture.toml, a picture, the measured facts."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -8,26 +8,32 @@ import typer
 from typer import Argument, Option
 
 from capar.cli.options import Beside, Capture, Json, ProfileName, Rules, Set, Steady, rule_base
-from capar.cli.output import console, print_json, written
+from capar.cli.output import console, emit, print_json, print_table, save
+from capar.model.errors import CaparError, FileError
 
 if TYPE_CHECKING:
     from capar.model.capture import Capture as CaptureData
-    from capar.model.capture import Notice
+    from capar.model.capture import Notice, Stream
 
-STREAM_COLUMNS = (
-    "stream", "kind", "s", "Hz", "jitter ms", "lost", "longest gap s", "rest mm", "rest deg",
-    "range m",
-)  # fmt: skip
-PAIR_COLUMNS = ("nearest pairs", "", "least m", "at s", "near for s")
+STREAM_FIGURES = {
+    "s": ("seconds", 2),
+    "Hz": ("rate_hz", 1),
+    "jitter ms": ("jitter_ms", 1),
+    "lost": ("lost", 0),
+    "longest gap s": ("longest_gap_s", 2),
+    "rest mm": ("noise_mm", 2),
+    "rest deg": ("noise_deg", 2),
+}
+"""Columns of streams: the key of a report, and decimals."""
+
+PAIR_FIGURES = {"least m": ("least_m", 3), "at s": ("at_s", 2), "near for s": ("near_s", 2)}
 
 
 def inspect(
-    place: Annotated[
-        str, Argument(help="A folder with a capture.toml (and :take), or a motion file.")
-    ],
+    place: Annotated[str, Argument(help="A capture (FOLDER:TAKE), or a motion file.")],
     json: Json = False,
     calibration: Annotated[
-        bool, Option("--calibration", help="Print what is decided once for the whole capture.")
+        bool, Option("--calibration", help="Print what holds throughout.")
     ] = False,
     set_: Set = None,
 ) -> None:
@@ -36,7 +42,16 @@ def inspect(
     That is its streams with rate, gaps, noise and range, and which bodies come near each other.
     """
     if calibration:
-        _calibration(place, set_ or [], json=json)
+        from capar.model.json_form import to_json
+        from capar.views.tables import calibration_tables
+        from extractors.calibration import calibrate, set_values
+        from extractors.readers.bundle.capture_toml import read_capture
+
+        known = set_values(calibrate(read_capture(place)), set_ or [])
+        if json:
+            typer.echo(to_json(known), nl=False)
+        else:
+            console().print(*calibration_tables(known))
         return
     path = Path(place)
     bundled = path.suffix == ".toml" or not path.exists() or (path / "capture.toml").is_file()
@@ -44,45 +59,35 @@ def inspect(
     if json:
         print_json(report, sort_keys=True)
     else:
-        _show(report)
-
-
-def _calibration(place: str, settings: list[str], *, json: bool) -> None:
-    from capar.model.json_form import to_json
-    from capar.views.tables import calibration_tables
-    from extractors.calibration import calibrate, set_values
-    from extractors.readers.bundle.capture_toml import read_capture
-
-    known = set_values(calibrate(read_capture(place)), settings)
-    if json:
-        typer.echo(to_json(known), nl=False)
-        return
-    for table in calibration_tables(known):
-        console().print(table)
+        _print_report(report)
 
 
 def _of_capture(place: str) -> dict[str, Any]:
     from capar.model.capture import recorded_at
     from extractors.readers.bundle.capture_toml import read_capture
-    from extractors.readers.drafting.survey import as_json, near_pairs, survey
 
     capture = read_capture(place)
     kinds = {sensor.name: f"sensor, {sensor.role.value}" for sensor in capture.sensors}
     kinds |= {thing.name: f"object, {thing.tag.value}" for thing in capture.objects}
     streams = {name: body.stream for name, body in capture.bodies.items()}
-    surveys = [survey(name, kinds[name], stream) for name, stream in streams.items()]
+    shapes = {n: body.shape.description for n, body in capture.bodies.items() if body.shape}
     head = {
         "name": capture.name,
         "frames": len(capture.times),
         "rate_hz": capture.rate_hz,
         "recorded_at": recorded_at(capture.sources),
-        "shapes": {
-            name: body.shape.description for name, body in capture.bodies.items() if body.shape
-        },
+        "shapes": shapes,
         "notices": [found.document() for found in (*capture.notices, *_findings(capture))],
         "sources": [{"path": s.path, "format": s.format} for s in capture.sources],
     }
-    return head | as_json(surveys, near_pairs(streams))
+    return head | _surveyed(streams, kinds)
+
+
+def _surveyed(streams: "Mapping[str, Stream]", kinds: Mapping[str, str]) -> dict[str, Any]:
+    from extractors.readers.drafting.survey import as_json, near_pairs, survey
+
+    surveys = [survey(name, kinds[name], stream) for name, stream in streams.items()]
+    return as_json(surveys, near_pairs(streams))
 
 
 def _findings(capture: "CaptureData") -> "Iterator[Notice]":
@@ -103,7 +108,6 @@ def _of_file(path: Path) -> dict[str, Any]:
     import numpy as np
 
     from capar.model.capture import Stream, notice
-    from extractors.readers.drafting.survey import as_json, near_pairs, survey
     from extractors.readers.registry import read_recording
 
     recording = read_recording(path)
@@ -118,7 +122,6 @@ def _of_file(path: Path) -> dict[str, Any]:
         streams[name] = Stream(recording.marker_times, points * metres, upright)
         kinds[name] = "marker"
     unit = [notice("no-unit")] if recording.unit_m is None else []
-    surveys = [survey(name, kinds[name], stream) for name, stream in streams.items()]
     head = {
         "name": path.name,
         "format": recording.format,
@@ -127,59 +130,51 @@ def _of_file(path: Path) -> dict[str, Any]:
         "notices": [told.document() for told in (*recording.notices, *unit)],
         "sources": [{"path": recording.source.path, "format": recording.format}],
     }
-    return head | as_json(surveys, near_pairs(streams))
+    return head | _surveyed(streams, kinds)
 
 
-def _show(report: dict[str, Any]) -> None:
-    from capar.views.tables import terminal_table
-
+def _print_report(report: dict[str, Any]) -> None:
     out = console()
     when = f"recorded {report['recorded_at']}" if report["recorded_at"] else "no date of recording"
     out.print(f"[bold]{report['name']}[/]: {report['frames']} frames, {when}")
     rows = [
         (
-            stream["name"], stream["kind"], f"{stream['seconds']:.2f}", f"{stream['rate_hz']:.1f}",
-            f"{stream['jitter_ms']:.1f}", str(stream["lost"]), f"{stream['longest_gap_s']:.2f}",
-            _figure(stream["noise_mm"]), _figure(stream["noise_deg"]),
+            stream["name"], stream["kind"],
+            *(_figure(stream[key], digits) for key, digits in STREAM_FIGURES.values()),
             " x ".join(f"{length:.2f}" for length in stream["range_m"] or ()) or "-",
         )
         for stream in report["streams"]
     ]  # fmt: skip
-    out.print(terminal_table(STREAM_COLUMNS, rows, names={0}))
-    if report["pairs"]:
-        pairs = [
-            (
-                pair["first"], pair["second"], f"{pair['least_m']:.3f}",
-                f"{pair['at_s']:.2f}", f"{pair['near_s']:.2f}",
-            )
-            for pair in report["pairs"]
-        ]  # fmt: skip
-        out.print(terminal_table(PAIR_COLUMNS, pairs, names={0, 1}))
+    print_table(("stream", "kind", *STREAM_FIGURES, "range m"), rows, names={0})
+    pairs = [
+        (pair["first"], pair["second"],
+         *(_figure(pair[key], digits) for key, digits in PAIR_FIGURES.values()))
+        for pair in report["pairs"]
+    ]  # fmt: skip
+    if pairs:
+        print_table(("nearest pairs", "", *PAIR_FIGURES), pairs, names={0, 1})
     for name, text in report.get("shapes", {}).items():
         out.print(f"shape of {name}: {text}", highlight=False)
-    for told in report["notices"]:
-        out.print(f"[yellow]{told['code']}[/]: {told['message']}", highlight=False)
+    for notice in report["notices"]:
+        out.print(f"[yellow]{notice['code']}[/]: {notice['message']}", highlight=False)
 
 
-def _figure(value: float | None) -> str:
-    return "-" if value is None else f"{value:.2f}"
+def _figure(value: float | None, digits: int) -> str:
+    return "-" if value is None else f"{value:.{digits}f}"
 
 
 def new_capture(
     files: Annotated[list[Path] | None, Argument(help="Motion files of one trial.")] = None,
-    output: Annotated[
-        Path, Option("--output", "-o", help="The capture.toml to write, or its folder.")
-    ] = Path("capture.toml"),
+    output: Annotated[Path, Option("--output", "-o", help="Its file or folder.")] = Path(
+        "capture.toml"
+    ),
     force: Annotated[bool, Option("--force", help="Overwrite what is there.")] = False,
-    schema: Annotated[
-        bool, Option("--schema", help="Print the JSON schema of capture.toml, for editors.")
-    ] = False,
+    schema: Annotated[bool, Option("--schema", help="Print the JSON schema of it.")] = False,
 ) -> None:
     """Write a commented capture.toml for motion files.
 
     It is read back at once, and the lines that need a look are listed.
     """
-    from capar.model.errors import CaparError, FileError
     from extractors.readers.bundle.capture_toml import read_capture
     from extractors.readers.drafting.draft import EDIT, draft
     from extractors.readers.registry import read_recording
@@ -198,8 +193,7 @@ def new_capture(
     recordings = [read_recording(each) for each in files]
     text = draft(recordings, path.parent, files[0].name.split(".")[0])
     path.parent.mkdir(parents=True, exist_ok=True)
-    with written(path) as draft_file:
-        draft_file.write_text(text, encoding="utf-8")
+    emit(text, path)
     typer.echo(f"wrote {path}")
     for number, line in enumerate(text.splitlines(), 1):
         if EDIT in line:
@@ -217,26 +211,19 @@ def new_capture(
 
 def view(
     capture: Capture,
-    html: Annotated[
-        Path | None, Option(help="Write one HTML file that opens in a browser without a network.")
-    ] = None,
+    html: Annotated[Path | None, Option(help="Write a file for any browser.")] = None,
     png: Annotated[Path | None, Option(help="Draw the moment --at to a PNG file.")] = None,
     at: Annotated[float | None, Option(help="Which moment [s]; the middle if not given.")] = None,
     profile: ProfileName = "extended",
     rules: Rules = None,
-    fit: Annotated[
-        bool, Option("--fit", help="Fit a human body to the recording and show it too.")
-    ] = False,
-    only_bodies: Annotated[
-        bool, Option("--only-bodies", help="Show the recording without observing it.")
-    ] = False,
+    fit: Annotated[bool, Option("--fit", help="Show a fitted human body too.")] = False,
+    only_bodies: Annotated[bool, Option("--only-bodies", help="Leave out the timeline.")] = False,
 ) -> None:
     """Show the bodies of a capture in three dimensions.
 
     Use it before anything else on a capture.toml of your own: wrong units, axes and mounts are
     seen at once. Under the bodies a timeline shows what was observed.
     """
-    from capar.model.errors import CaparError
     from capar.views.viewer.stage import stage
     from extractors.readers.bundle.capture_toml import read_capture
 
@@ -254,33 +241,24 @@ def view(
     if png is not None:
         from capar.views.viewer.snapshot import snapshot
 
-        with written(png) as draft:
-            snapshot(shown, at if at is not None else float(shown.times.mean()), draft)
-        typer.echo(f"drew {png}")
+        moment = at if at is not None else float(shown.times.mean())
+        save(png, lambda draft: snapshot(shown, moment, draft), "drew")
     if html is not None:
         from capar.pipelines.observation import observe
         from capar.views.viewer.web_page import web_page
 
         found = None if only_bodies else observe(trial, rules=rule_base(profile, rules))
-        page = web_page(shown, found)
-        with written(html) as draft:
-            draft.write_text(page, encoding="utf-8")
-        typer.echo(f"wrote {html}: open it in a browser")
+        save(html, web_page(shown, found))
+        typer.echo("open it in a browser", err=True)
 
 
 def facts(
     capture: Capture,
     profile: ProfileName = "extended",
-    ranked: Annotated[
-        bool, Option(help="Number the borders too, so that the rule files can read the program.")
-    ] = True,
+    ranked: Annotated[bool, Option(help="Number the borders too, for the rules.")] = True,
     derive: Annotated[
         bool,
-        Option(
-            "--derive",
-            help="Add contact(Body, Other, Frame), moved(Object, Segment) and "
-            "regrasps(Segment, Object) by the rules.",
-        ),
+        Option("--derive", help="Add contact/3, moved/2 and regrasps/2 as the rules derive them."),
     ] = False,
     rules: Rules = None,
     actionary: Beside = None,
@@ -307,9 +285,7 @@ def facts(
     if derive:
         files = (*base.files, rule_file("explain/derived.lp"))
         answer = solve(files, (*measurements.facts, *borders))
-        lines = "".join(
-            f"{text_of((name, *arguments))}.\n"
-            for name in ("contact", "moved", "regrasps")
-            for arguments in answer.of(name)
-        )
-        typer.echo(f"% Derived.\n{lines}", nl=False)
+        typer.echo("% Derived.")
+        for name in ("contact", "moved", "regrasps"):
+            for arguments in answer.of(name):
+                typer.echo(f"{text_of((name, *arguments))}.")

@@ -1,6 +1,7 @@
 """Check what is observed: against labels, and against claims in words."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -8,14 +9,11 @@ import typer
 from typer import Argument, Option
 
 from capar.cli.options import Beside, Json, ProfileName, Rules, Steady, rule_base
-from capar.cli.output import check_writable, console, print_json, progress, written
+from capar.cli.output import check_picture, print_json, print_table, progress, written
 from capar.evaluation import Contradictions, Kind
 from capar.model.errors import CaparError
 
 if TYPE_CHECKING:
-    from rich.console import Console
-    from rich.table import Table
-
     from capar.claims.claims import Verdict
 
 SHOWN = 12
@@ -25,7 +23,6 @@ MOST_PARTS = 20
 """Up to so many links, bodies, objects or events have a row each; JSON has all."""
 
 Scores = Mapping[str, Any]
-Cell = Callable[[Scores], str]
 
 
 def evaluate(
@@ -33,26 +30,21 @@ def evaluate(
         list[str],
         Argument(
             metavar="EVALUATION|CAPTURE LABELS...",
-            help="An evaluation file; or captures, each followed by its label file. "
-            "BUNDLE:PATTERN is every take whose name fits, {take} its name in the label file's.",
+            help="An evaluation file; or captures, each with a label file; {take} in its name "
+            "stands for each take of BUNDLE:PATTERN.",
         ),
     ],
     mapping: Annotated[
-        Path | None,
-        Option("--mapping", "-m", help="Actions: TOML file from our names to the labels."),
+        Path | None, Option("--mapping", "-m", help="A TOML file from our names to labels.")
     ] = None,
     kind: Annotated[Kind, Option(help="What the labels are about.")] = Kind.ACTIONS,
     takes: Annotated[
-        list[str] | None,
-        Option(help="Of an evaluation file, only takes that fit this pattern; may be repeated."),
+        list[str] | None, Option(help="Of an evaluation file only these takes; may be repeated.")
     ] = None,
     profile: ProfileName = "extended",
-    frames_of: Annotated[
-        str, Option(help="File of the capture whose frames the labels count.")
-    ] = "",
+    frames_of: Annotated[str, Option(help="The file whose frames labels count.")] = "",
     contradictions: Annotated[
-        Contradictions,
-        Option(help="What to do about labels that overlap or end before they start."),
+        Contradictions, Option(help="Labels that overlap or end before they start.")
     ] = Contradictions.REFUSE,
     rules: Rules = None,
     actionary: Beside = None,
@@ -60,8 +52,7 @@ def evaluate(
     plot: Annotated[
         Path | None,
         Option(
-            help="Draw the labels beside the segments, to a .png, .svg or .pdf file; {capture} in "
-            "its name stands for the capture's."
+            help="Draw labels and segments to a .png, .svg or .pdf file; {capture} is the name."
         ),
     ] = None,
     json: Json = False,
@@ -103,11 +94,8 @@ def evaluate(
         pairs = read_pairs(places)
         chosen = read_mapping(mapping) if mapping else None
         plan = Plan(kind, pairs, chosen, frames_of=frames_of, contradictions=contradictions)
-    if plot:
-        from capar.views.picture import SUFFIXES
-
-        for path in picture_paths(plot, [each.name for each in plan.pairs]).values():
-            check_writable(path, suffixes=SUFFIXES)
+    for path in picture_paths(plot, [each.name for each in plan.pairs]).values() if plot else ():
+        check_picture(path)
     found = carry_out(plan, rules=base, progress=progress("observing"))
     paths = picture_paths(plot, [each.name for each in found.captures]) if plot else {}
     for capture in found.captures if plot else ():
@@ -116,209 +104,126 @@ def evaluate(
     if json:
         print_json(report(found))
     else:
-        _print_evaluation(console(), report(found))
+        _print_evaluation(report(found))
     for path in dict.fromkeys(paths.values()):
         typer.echo(f"drew {path}", err=True)
 
 
-def _print_evaluation(out: "Console", result: Scores) -> None:
+def _print_evaluation(result: Scores) -> None:
     """Scores, then confusions and the longest differences, then remarks."""
     kind, everything = str(result["kind"]), result["all"]
     part, caption, columns = TABLES[kind]
-    out.print(_scores(result, part, caption, columns))
+    rows, sections = list[tuple[str, ...]](), list[int]()
+    for group in _score_rows(part, result):
+        rows += [(name, *(_cell(own[key]) for key in columns.values())) for name, own in group]
+        sections.append(len(rows) - 1)
+    captures = len(result["captures"])
+    print_table(
+        (part, *columns), rows, right=range(1, len(columns) + 1), sections=sections[:-1],
+        title=f"{captures} capture{'s' * (captures != 1)}", caption=caption,
+    )  # fmt: skip
+    lines = []
     if kind == "actions":
-        out.print(_confusions(everything))
+        _print_confusions(everything)
         for name in ("missed", "inserted"):
             counts = ", ".join(f"{each} {n}" for each, n in everything[name].items())
-            out.print(f"segments {name}: {counts or 'none'}", markup=False)
+            lines.append(f"segments {name}: {counts or 'none'}")
     if result["worst"]:
-        out.print(_worst(result["worst"][:SHOWN]))
-    lines = [*result["notices"]]
+        keys = ("capture", "channel", "start_s", "end_s", "true", "found", "segments")
+        spans = [
+            [f"{each[k]:.2f}" if k.endswith("_s") else str(each[k]) for k in keys]
+            for each in result["worst"][:SHOWN]
+        ]
+        heading = ("capture", "of", "from", "to", "labelled", "found", "segments")
+        print_table(heading, spans, right={2, 3}, title="longest intervals that differ [s]")
     if kind == "carries":
         sharp = everything["moving_at_both_ends"]
-        lines[:0] = [
+        start, end, both = (_cell(sharp[key]) for key in ("start", "end", "both"))
+        lines += [
             f"{everything['excluded']} of {everything['carries']} carries are excluded, as nothing "
             f"moves in them; a carry counts as found within {everything['within_s']:g} s",
-            f"of {sharp['carries']} whose object moves at both labelled ends: start "
-            f"{_number(sharp['start'])}, end {_number(sharp['end'])}, both "
-            f"{_number(sharp['both'])} %",
+            f"of {sharp['carries']} whose object moves at both labelled ends: start {start}, "
+            f"end {end}, both {both} %",
         ]
+    lines += result["notices"]
     if result[f"unlabelled_{part}"]:
         names = ", ".join(result[f"unlabelled_{part}"])
         lines.append(f"not counted, because they bear no labels: {names}")
     for line in lines:
-        out.print(line, markup=False, soft_wrap=True)
+        typer.echo(line)
 
 
-def _scores(result: Scores, part: str, caption: str, columns: Mapping[str, Cell]) -> "Table":
-    from rich.markup import escape
-
-    captures = len(result["captures"])
-    table = _table(f"{captures} capture{'s' * (captures != 1)}", caption)
-    for index, column in enumerate((part, *columns)):
-        table.add_column(
-            column, justify="right" if index else "left", no_wrap=bool(index), overflow="fold"
-        )
-    for name, scores in _score_rows(part, result):
-        if scores is None:
-            table.add_section()
-        else:
-            table.add_row(escape(name), *(cell(scores) for cell in columns.values()))
-    return table
-
-
-def _score_rows(part: str, result: Scores) -> Iterator[tuple[str, Scores | None]]:
-    """Parts and whole; then each group's, then each capture's whole; None is a line between."""
+def _score_rows(part: str, result: Scores) -> Iterator[list[tuple[str, Scores]]]:
+    """Parts and whole; then each group's, then each capture's whole."""
     shown = list(result[part].items())
-    yield from shown if len(shown) <= MOST_PARTS else ()
-    yield "all", result["all"]
+    yield [*(shown if len(shown) <= MOST_PARTS else ()), ("all", result["all"])]
     for name, group in result["groups"].items():
-        yield "", None
-        own = list(group[part].items())
-        if len(own) <= MOST_PARTS:
-            yield from ((f"{name}: {each}", scores) for each, scores in own)
-        yield f"{name}: all", group["all"]
+        own = [(f"{name}: {each}", scores) for each, scores in group[part].items()]
+        yield [*(own if len(own) <= MOST_PARTS else ()), (f"{name}: all", group["all"])]
     if len(result["by_capture"]) > 1:
-        yield "", None
-        yield from ((name, scores["all"]) for name, scores in result["by_capture"].items())
+        yield [(name, scores["all"]) for name, scores in result["by_capture"].items()]
 
 
-def _confusions(scored: Scores) -> "Table":
+def _print_confusions(scored: Scores) -> None:
     wrong = [each for each in scored["confusion"] if each["true"] != each["predicted"]]
-    table = _table("frames under another label")
-    for column in ("true", "predicted", "frames", "share"):
-        table.add_column(
-            column, overflow="fold", justify="right" if column in {"frames", "share"} else "left"
-        )
-    for each in wrong[:SHOWN]:
-        share = f"{100 * each['frames'] / scored['frames']:.1f} %"
-        table.add_row(each["true"], each["predicted"], str(each["frames"]), share)
+    rows = [
+        (each["true"], each["predicted"], str(each["frames"]),
+         f"{100 * each['frames'] / scored['frames']:.1f} %")
+        for each in wrong[:SHOWN]
+    ]  # fmt: skip
     if len(wrong) > SHOWN:
-        table.add_row("...", "...", str(sum(each["frames"] for each in wrong[SHOWN:])), "")
-    return table
+        rows.append(("...", "...", str(sum(each["frames"] for each in wrong[SHOWN:])), ""))
+    columns = ("true", "predicted", "frames", "share")
+    print_table(columns, rows, right={2, 3}, title="frames under another label")
 
 
-def _worst(found: Sequence[Scores]) -> "Table":
-    from rich.markup import escape
-
-    table = _table("longest intervals that differ [s]")
-    for column in ("capture", "of", "from", "to", "labelled", "found", "segments"):
-        table.add_column(
-            column, overflow="fold", justify="right" if column in {"from", "to"} else "left"
-        )
-    for span in found:
-        texts = [escape(span[key]) for key in ("capture", "channel", "true", "found", "segments")]
-        times = (f"{span['start_s']:.2f}", f"{span['end_s']:.2f}")
-        table.add_row(*texts[:2], *times, *texts[2:])
-    return table
+def _cell(value: Any) -> str:
+    """A count, a score, or median and 95th percentile of an error."""
+    if isinstance(value, Mapping):
+        return " / ".join(f"{v:.0f}" if (v := value[k]) is not None else "-" for k in PERCENTILES)
+    return "-" if value is None else str(value) if isinstance(value, int) else f"{value:.1f}"
 
 
-def _table(title: str, caption: str = "") -> "Table":
-    from rich.box import SIMPLE_HEAD
-    from rich.markup import escape
-    from rich.table import Table
-
-    return Table(
-        title=escape(title),
-        caption=escape(caption) or None,
-        title_justify="left",
-        caption_justify="left",
-        box=SIMPLE_HEAD,
-        collapse_padding=True,
-        pad_edge=False,
-    )
-
-
-def _score(key: str) -> Cell:
-    return lambda scores: _number(scores[key])
-
-
-def _count(key: str) -> Cell:
-    return lambda scores: str(scores[key])
-
-
-def _error(key: str) -> Cell:
-    """Median and 95th percentile."""
-    return lambda scores: " / ".join(
-        "-" if scores[key][each] is None else f"{scores[key][each]:.0f}"
-        for each in ("median", "p95")
-    )
-
-
-def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.1f}"
-
-
-_ONSETS = {"onset": _error("onset_ms"), "offset": _error("offset_ms")}
-TABLES: dict[str, tuple[str, str, dict[str, Cell]]] = {
+PERCENTILES = ("median", "p95")
+ONSETS = {"onset": "onset_ms", "offset": "offset_ms"}
+TABLES: dict[str, tuple[str, str, dict[str, str]]] = {
     "actions": (
         "links",
         "onset, offset: median / 95th percentile of the size of the error [ms]",
-        {
-            "accuracy": _score("accuracy"),
-            "F1": _score("macro_f1"),
-            "F1@10": _score("f1@10"),
-            "@25": _score("f1@25"),
-            "@50": _score("f1@50"),
-            "edit": _score("edit"),
-            **_ONSETS,
-        },
+        {"accuracy": "accuracy", "F1": "macro_f1", "F1@10": "f1@10", "@25": "f1@25",
+         "@50": "f1@50", "edit": "edit", **ONSETS},
     ),
     "contacts": (
         "bodies",
         "all: whether any body touches; frame by frame [%]\n"
         "onset, offset: median / 95th percentile of the distance to the nearest found one [ms]",
-        {
-            "frames": _count("frames"),
-            "precision": _score("precision"),
-            "recall": _score("recall"),
-            "F1": _score("f1"),
-            **_ONSETS,
-        },
+        {"frames": "frames", "precision": "precision", "recall": "recall", "F1": "f1", **ONSETS},
     ),
     "carries": (
         "objects",
         "start, end, both: carries whose printed ends are near the labelled ones [%]\n"
         "off: median / 95th percentile of the size of the error [ms]",
-        {
-            "carries": _count("counted"),
-            "start": _score("start"),
-            "end": _score("end"),
-            "both": _score("both"),
-            "start off": _error("start_ms"),
-            "end off": _error("end_ms"),
-            "extra": _count("extra"),
-        },
+        {"carries": "counted", "start": "start", "end": "end", "both": "both",
+         "start off": "start_ms", "end off": "end_ms", "extra": "extra"},
     ),
     "events": (
         "events",
         "away: median / 95th percentile of the distance from what was seen to what was found [ms]",
-        {
-            **{key: _count(key) for key in ("seen", "found", "missed", "open", "extra")},
-            "F1": _score("f1"),
-            "away": _error("away_ms"),
-        },
+        {"seen": "seen", "found": "found", "missed": "missed", "open": "open", "extra": "extra",
+         "F1": "f1", "away": "away_ms"},
     ),
     "containers": (
         "containers",
         "went in: the middle lies in the container at the end and did not before",
-        {
-            "objects": _count("objects"),
-            "right": _count("right"),
-            "went in": _count("went_in"),
-            "told": _count("told"),
-            "told wrongly": _count("told_wrongly"),
-            "untold": _count("untold"),
-        },
+        {"objects": "objects", "right": "right", "went in": "went_in", "told": "told",
+         "told wrongly": "told_wrongly", "untold": "untold"},
     ),
-}
-"""For each kind of labels: its parts, the caption, and the columns with their scores."""
+}  # fmt: skip
+"""For each kind of labels: its parts, the caption, and the key of each column's scores."""
 
 
 def test(
-    files: Annotated[
-        list[Path], Argument(help="Files of claims, *.motion.toml, or folders of them.")
-    ],
+    files: Annotated[list[Path], Argument(help="*.motion.toml files or folders.")],
     rules: Rules = None,
     actionary: Beside = None,
     json: Json = False,
@@ -366,32 +271,24 @@ def test(
 
     rows: list[dict[str, Any]] = []
     mistakes: list[CaparError] = []
-    for path in [
-        each
-        for file in files
-        for each in (sorted(file.rglob(f"*{SUFFIX}")) if file.is_dir() else [file])
-    ]:
+    folders = (sorted(each.rglob(f"*{SUFFIX}")) if each.is_dir() else [each] for each in files)
+    for path in chain.from_iterable(folders):
         verdicts: Sequence[Verdict] = ()
-        mistake: CaparError | None = None
+        mistake = ""
         try:
             claimed = read_motion_test(path)
             verdicts = list(run_motion_test(claimed, rules=rules, actionary=actionary))
         except CaparError as error:
-            mistake = error
+            mistake = str(error)
             mistakes.append(error)
-        rows.append(
-            {
-                "name": str(path),
-                "tests": len(verdicts),
-                "failures": sum(not each.holds for each in verdicts),
-                "error": str(mistake or ""),
-                "cases": [
-                    {"name": one.claim, "capture": one.capture, "passed": one.holds,
-                     "found": one.found, "error": one.mistake}
-                    for one in verdicts
-                ],
-            }
-        )  # fmt: skip
+        cases = [
+            {"name": one.claim, "capture": one.capture, "passed": one.holds,
+             "found": one.found, "error": one.mistake}
+            for one in verdicts
+        ]  # fmt: skip
+        failures = sum(not each.holds for each in verdicts)
+        head = {"name": str(path), "tests": len(verdicts), "failures": failures}
+        rows.append({**head, "error": mistake, "cases": cases})
         if not json:
             _print_suite(rows[-1])
     if json:

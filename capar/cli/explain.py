@@ -21,21 +21,13 @@ def explain(
     capture: Capture,
     segment: Annotated[
         str | None,
-        Argument(
-            help="END_EFFECTOR/INDEX, such as right_hand/3; END_EFFECTOR for all of its own; "
-            "without it, every one."
-        ),
+        Argument(help="END_EFFECTOR/INDEX, such as right_hand/3; END_EFFECTOR for all of its own."),
     ] = None,
     why_not: Annotated[
         str | None,
-        Option(
-            help="A name that it has not: the rule for it that comes nearest, with the conditions "
-            "that it lacks; then the smallest change of what was measured."
-        ),
+        Option(help="Another name: its nearest rule and what it lacks, and the smallest change."),
     ] = None,
-    every: Annotated[
-        bool, Option("--all", help="With --why-not: every answer that is as small.")
-    ] = False,
+    every: Annotated[bool, Option("--all", help="With --why-not: all answers.")] = False,
     profile: ProfileName = "extended",
     rules: Rules = None,
     actionary: Beside = None,
@@ -44,10 +36,7 @@ def explain(
     svg: Annotated[Path | None, Option(help="Draw the tree to this file.")] = None,
     plot: Annotated[
         Path | None,
-        Option(
-            help="Draw the quantities of SEGMENT's conditions over time to this .png, .svg or "
-            ".pdf, each with its limits and the intervals of the facts about it."
-        ),
+        Option(help="Draw what SEGMENT's conditions measure to a .png, .svg or .pdf file."),
     ] = None,
 ) -> None:
     """Say why a segment has its name, and why not another one.

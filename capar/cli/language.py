@@ -1,6 +1,5 @@
 """Language: describe a capture, read sentences, look verbs up, report on them."""
 
-from collections.abc import Iterable
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
@@ -25,14 +24,13 @@ from capar.cli.options import (
     rule_base,
     rule_words,
 )
-from capar.cli.output import check_writable, emit, print_json
+from capar.cli.output import answer, check_writable, emit
+from capar.model.errors import CaparError, UnknownNameError
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from capar.model.observation import Observation
     from kb.language import Question
-    from kb.lexicon.verbs import Fit, Seen, VerbAnswer
+    from kb.lexicon.verbs import Fit, VerbAnswer
     from kb.store.stores import Store
 
 
@@ -45,9 +43,7 @@ class Detail(StrEnum):
 
 def describe(
     capture: Capture,
-    detail: Annotated[
-        Detail, Option(help="Every step, or a summary of what changed.")
-    ] = Detail.STEPS,
+    detail: Annotated[Detail, Option(help="Every step, or what changed.")] = Detail.STEPS,
     timed: Annotated[bool, Option("--timed", help="Say when each step was.")] = False,
     profile: ProfileName = "extended",
     corrected: Corrected = False,
@@ -67,19 +63,14 @@ def describe(
     words = rule_words(rules, actionary)
     text = told(observation, detail=detail.value, timed=timed, words=words)
     notices = reservations_on_told(observation)
-    if json:
-        told_of = {"capture": observation.capture, "description": text}
-        print_json(told_of | {"notices": [each.document() for each in notices]}, sort_keys=True)
-    else:
-        typer.echo(
-            "\n".join((text, *reservation_lines(notices, called=nouns(observation.objects))))
-        )
+    value = {"capture": observation.capture, "description": text}
+    value["notices"] = [each.document() for each in notices]
+    lines = (text, *reservation_lines(notices, called=nouns(observation.objects)))
+    answer(value, lines, json=json, sort_keys=True)
 
 
 def _corrected(observation: "Observation", actionary: str | None) -> "Observation":
     """The same with the segments that persons claim in an Actionary."""
-    from dataclasses import replace
-
     from kb import Actionary
     from kb.corrections import claims, corrected_links
 
@@ -90,9 +81,7 @@ def _corrected(observation: "Observation", actionary: str | None) -> "Observatio
 
 
 def parse(
-    sentence: Annotated[
-        str, Argument(help="Such as: pick up the mug with both hands and put it in the box")
-    ],
+    sentence: Annotated[str, Argument(help="Such as: pick up the mug and put it in the box")],
     actionary: Place = None,
     rules: Rules = None,
     json: Json = False,
@@ -105,6 +94,7 @@ def parse(
     without one any noun will do.
     """
     from capar.pipelines.language import vocabulary
+    from capar.views.readings import reading_lines
     from kb.language import Question
     from kb.language import parse as read
 
@@ -112,39 +102,34 @@ def parse(
     with open_words(actionary) as store:
         value = read(sentence, vocabulary(words, store))
         if isinstance(value, Question):
-            _ask(value, store, json=json)
-        elif json:
-            print_json(value, sort_keys=True)
+            _answer_question(value, store, json=json)
         else:
-            from capar.views.readings import reading_lines
-
-            typer.echo("\n".join(reading_lines(value)))
+            answer(value, reading_lines(value), json=json, sort_keys=True)
 
 
-def _ask(value: "Question", store: "Store | None", *, json: bool) -> None:
+def _answer_question(value: "Question", store: "Store | None", *, json: bool) -> None:
     from capar.views.readings import answer_lines, question_lines
 
     queries = (value.sparql, *value.others)
+    names = (value.about, *value.alternatives, *value.also)
     answers: list[list[Any]] | None = None
-    if store is not None:
+    lines = [*question_lines(value)]
+    if store is None:
+        lines += queries
+    else:
         answers = [list(value.chosen(list(store.ask(each).plain()))) for each in queries]
-    if json:
-        told: dict[str, object] = {
-            "asks": value.ask.value,
-            "about": value.about,
-            "sparql": value.sparql,
-        }
-        told |= {"rank": value.rank, "others": (*value.alternatives, *value.also)}
-        told |= {"answers": None if answers is None else answers[0]}
-        told |= {"other_answers": None if answers is None else answers[1:]}
-        print_json(told, sort_keys=True)
-        return
-    typer.echo("\n".join(question_lines(value)))
-    if answers is None:
-        typer.echo("\n".join(queries))
-        return
-    for about, rows in zip((value.about, *value.alternatives, *value.also), answers, strict=True):
-        typer.echo("\n".join(answer_lines(value, about, rows)))
+        for about, rows in zip(names, answers, strict=True):
+            lines += answer_lines(value, about, rows)
+    document = {
+        "asks": value.ask.value,
+        "about": value.about,
+        "sparql": value.sparql,
+        "rank": value.rank,
+        "others": names[1:],
+        "answers": answers and answers[0],
+        "other_answers": answers and answers[1:],
+    }
+    answer(document, lines, json=json, sort_keys=True)
 
 
 FIRST_SENSES = 4
@@ -154,11 +139,9 @@ FIRST_SENSES = 4
 def verb(
     lemma: Annotated[str, Argument(help="A verb, such as carry or 'pick up'.")] = "",
     segment: Annotated[
-        str, Option("--for", help="A segment, as CAPTURE/END_EFFECTOR/INDEX: which verbs fit it?")
+        str, Option("--for", help="CAPTURE/END_EFFECTOR/INDEX: verbs of a segment.")
     ] = "",
-    kinds: Annotated[
-        bool, Option("--kinds", help="Which primitives do the verb, or a kind of it?")
-    ] = False,
+    kinds: Annotated[bool, Option("--kinds", help="Primitives of it and its kinds.")] = False,
     actionary: Place = None,
     rules: Rules = None,
     most: Annotated[int, Option(help="How many verbs of a segment to show.", min=1)] = 15,
@@ -168,107 +151,75 @@ def verb(
 
     That is its senses, classes, roles, primitives, and where it was seen.
     """
-    from capar.model.errors import CaparError
-
     if bool(lemma) == bool(segment):
         raise CaparError("name a verb, or a segment with --for CAPTURE/END_EFFECTOR/INDEX")
+    from capar.pipelines.language import verbs_for
+    from capar.pipelines.linguistic_report import answer_verb
+    from kb.lexicon.verbs import doubts_of, keys_of_primitives, often, seen_in, summed
+    from kb.lexicon.verbs import kinds as kinds_of
+
     place = opened(actionary)
     words = rule_words(rules, place)
+    value: Any
     with open_words(actionary) as store:
         if segment:
-            from capar.pipelines.language import verbs_for
-
             base = rule_base("extended", rules, place)
-            _print_fits(verbs_for(segment, words, store=store, rules=base)[:most], json=json)
+            value = verbs_for(segment, words, store=store, rules=base)[:most]
+            lines = _fit_lines(value)
         elif kinds:
-            from kb.lexicon.verbs import keys_of_primitives
-            from kb.lexicon.verbs import kinds as kinds_of
-
             names = kinds_of(lemma, keys_of_primitives(words))
-            _print_kinds(lemma, names, store, json=json)
+            seen = [each for each in (seen_in(store) if store else ()) if each.primitive in names]
+            value = {"verb": lemma, "primitives": names, "seen": seen}
+            lines = [f"{lemma}, and every kind of it: {', '.join(names) or 'no primitive'}"]
+            lines += [f"  {r.observation}: {r.primitive}, {often(r.count)}" for r in summed(seen)]
         else:
-            from capar.pipelines.linguistic_report import answer_verb
-            from kb.lexicon.verbs import doubts_of
-
             for doubt in doubts_of(words):
                 typer.echo(f"note [unknown-word]: {doubt}", err=True)
-            _print_verb(answer_verb(lemma, words, store=store), json=json)
+            value = answer_verb(lemma, words, store=store)
+            lines = _verb_lines(value)
+    answer(value, lines, json=json, sort_keys=True)
 
 
-def _print_verb(answer: "VerbAnswer", *, json: bool) -> None:
-    from kb.lexicon.verbs import often, summed
-
-    if json:
-        print_json(answer, sort_keys=True)
-        return
-    from rich.console import Console
-
-    console = Console(highlight=False, soft_wrap=True)
-    console.print(f"[bold]{answer.verb}[/]: {answer.standing.words}.")
-    shown = [each for each in answer.senses if each.motion or each.sense.number <= FIRST_SENSES]
-    for sense in shown:
-        mark, gloss = "→" if sense.motion else " ", sense.synset.definition
-        console.print(f" {mark} {sense.sense.number}. {gloss} [dim]{sense.sense.key}[/]")
-    if len(shown) < len(answer.senses):
-        console.print(f"   and {len(answer.senses) - len(shown)} more senses (--json shows all)")
-    _print_classes(console, answer)
-    for near in answer.neighbours:
-        by = f" ({', '.join(near.primitives)})" if near.primitives else ""
-        console.print(f"{near.relation} {', '.join(near.verbs)}{by}: [dim]{near.definition}[/]")
-    for claim in answer.claims:
-        console.print(f"Thesis {claim.section}: {claim.status.value}. {claim.reason}")
-    for seen in summed(answer.seen):
-        console.print(f"Seen: {seen.primitive} in {seen.observation}, {often(seen.count)}.")
-    if answer.general_seen:
-        console.print(f"Not seen; what is more general was: {_in_all(answer.general_seen)}.")
-
-
-def _in_all(seen: "Iterable[Seen]") -> str:
-    """Primitives with how often each was seen in every observation together."""
-    from kb.lexicon.verbs import often, summed
-
-    sums = summed(replace(each, observation="") for each in seen)
-    return ", ".join(f"{each.primitive} {often(each.count)}" for each in sums)
-
-
-def _print_classes(console: "Console", answer: "VerbAnswer") -> None:
-    for found in answer.classes:
-        title = (
-            f"Levin {found.levin.number} {found.levin.title}" if found.levin else "no Levin class"
-        )
-        verbnet = f", VerbNet {found.verbnet}" if found.verbnet else ""
-        roles = f": {', '.join(found.roles)}" if found.roles else ""
-        console.print(f"{title}{verbnet}{roles}")
-        if found.frame and found.frame.example:
-            meaning = " ".join(map(str, found.frame.semantics))
-            console.print(f"   “{found.frame.example}” [dim]{meaning}[/]")
-    if not any(each.verbnet for each in answer.classes):
-        console.print("[dim]VerbNet's classes come with `capar lexicon import verbnet DIR`.[/]")
-
-
-def _print_kinds(lemma: str, names: tuple[str, ...], store: "Store | None", *, json: bool) -> None:
-    from kb.lexicon.verbs import often, seen_in, summed
-
-    seen = [each for each in (seen_in(store) if store else ()) if each.primitive in names]
-    if json:
-        print_json({"verb": lemma, "primitives": names, "seen": seen}, sort_keys=True)
-        return
-    typer.echo(f"{lemma}, and every kind of it: {', '.join(names) or 'no primitive'}")
-    for row in summed(seen):
-        typer.echo(f"  {row.observation}: {row.primitive}, {often(row.count)}")
-
-
-def _print_fits(fits: "tuple[Fit, ...]", *, json: bool) -> None:
-
-    if json:
-        print_json(fits, sort_keys=True)
-        return
+def _fit_lines(fits: "tuple[Fit, ...]") -> list[str]:
+    lines = []
     for number, each in enumerate(fits, 1):
-        typer.echo(f"{number:2d}. {each.verb}  ({each.source})")
-        for reason in each.reasons:
-            typer.echo(f"      + {reason}")
-        for reason in each.against:
-            typer.echo(f"      - {reason}")
+        lines.append(f"{number:2d}. {each.verb}  ({each.source})")
+        lines += [f"      + {reason}" for reason in each.reasons]
+        lines += [f"      - {reason}" for reason in each.against]
+    return lines
+
+
+def _verb_lines(found: "VerbAnswer") -> list[str]:
+    from kb.lexicon.verbs import often, summed
+
+    lines = [f"{found.verb}: {found.standing.words}."]
+    shown = [each for each in found.senses if each.motion or each.sense.number <= FIRST_SENSES]
+    for each in shown:
+        mark, gloss = "→" if each.motion else " ", each.synset.definition
+        lines.append(f" {mark} {each.sense.number}. {gloss} {each.sense.key}")
+    if len(shown) < len(found.senses):
+        lines.append(f"   and {len(found.senses) - len(shown)} more senses (--json shows all)")
+    for one in found.classes:
+        title = f"Levin {one.levin.number} {one.levin.title}" if one.levin else "no Levin class"
+        verbnet = f", VerbNet {one.verbnet}" if one.verbnet else ""
+        lines.append(title + verbnet + (f": {', '.join(one.roles)}" if one.roles else ""))
+        if one.frame and one.frame.example:
+            meaning = " ".join(map(str, one.frame.semantics))
+            lines.append(f"   “{one.frame.example}” {meaning}")
+    if not any(one.verbnet for one in found.classes):
+        lines.append("VerbNet's classes come with `capar lexicon import verbnet DIR`.")
+    for near in found.neighbours:
+        by = f" ({', '.join(near.primitives)})" if near.primitives else ""
+        lines.append(f"{near.relation} {', '.join(near.verbs)}{by}: {near.definition}")
+    for claim in found.claims:
+        lines.append(f"Thesis {claim.section}: {claim.status.value}. {claim.reason}")
+    for seen in summed(found.seen):
+        lines.append(f"Seen: {seen.primitive} in {seen.observation}, {often(seen.count)}.")
+    if found.general_seen:
+        sums = summed(replace(each, observation="") for each in found.general_seen)
+        every = ", ".join(f"{each.primitive} {often(each.count)}" for each in sums)
+        lines.append(f"Not seen; what is more general was: {every}.")
+    return lines
 
 
 lexicon = typer.Typer(no_args_is_help=True, help="Words in an Actionary: WordNet, Levin, VerbNet.")
@@ -296,7 +247,6 @@ def import_words(
     json: Json = False,
 ) -> None:
     """Read VerbNet 3.x from your own copy, in place of an earlier one."""
-    from capar.model.errors import UnknownNameError
     from kb.actionary import Actionary
     from kb.lexicon.loading import load_verbnet
     from kb.lexicon.verbnet import key_rate, read_verbnet
@@ -310,24 +260,21 @@ def import_words(
     with Actionary.open(actionary) as book:
         loaded = load_verbnet(book.store, classes, wordnet())
     every = [each for top in classes for each in top.family]
+    members = sum(len(each.members) for each in every)
     figures = {
         "files": len(classes),
         "classes": len(every),
-        "members": sum(len(each.members) for each in every),
+        "members": members,
         "keys": rate.keys,
         "keys_resolved": rate.resolved,
         "loaded": loaded,
     }
-    if json:
-        print_json(figures, sort_keys=True)
-        return
-    typer.echo(
-        f"{len(classes)} files with {len(every)} classes and {figures['members']} members; "
-        f"{rate.resolved} of {rate.keys} WordNet keys ({100 * rate.share:.1f} %) "
-        "are in WordNet 3.1."
-    )
-    if not loaded:
-        typer.echo("The Actionary had them already.")
+    lines = [
+        f"{len(classes)} files with {len(every)} classes and {members} members; {rate.resolved} of "
+        f"{rate.keys} WordNet keys ({100 * rate.share:.1f} %) are in WordNet 3.1."
+    ]
+    lines += [] if loaded else ["The Actionary had them already."]
+    answer(figures, lines, json=json, sort_keys=True)
 
 
 reports = typer.Typer(no_args_is_help=True, help="Reports over the rule base and an Actionary.")
@@ -353,14 +300,10 @@ class Format(StrEnum):
 @reports.command()
 def linguistics(
     actionary: Place = None,
-    form: Annotated[
-        Format, Option("--format", help="How to write it; svg is the drawing alone.")
-    ] = Format.TEXT,
+    form: Annotated[Format, Option("--format", help="svg is the drawing alone.")] = Format.TEXT,
     rules: Rules = None,
     output: OutputFile = None,
-    cases: Annotated[
-        Path | None, Option(help="Folder of rule cases that count as proof, as tests/rules.")
-    ] = None,
+    cases: Annotated[Path | None, Option(help="A folder of cases as proof.")] = None,
     corrected: Corrected = False,
     json: Annotated[bool, Option("--json", help="The same as --format json.")] = False,
 ) -> None:

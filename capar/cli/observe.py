@@ -53,81 +53,51 @@ class OnUnknown(StrEnum):
 
 def observe(
     capture: Annotated[
-        str,
-        Argument(
-            help="A capture's folder or capture.toml; FOLDER:TAKE for one of its takes. "
-            "Not with --device."
-        ),
+        str, Argument(help="A capture: its folder, or FOLDER:TAKE. Not with --device.")
     ] = "",
     profile: ProfileName = "extended",
     name: Annotated[str, Option(help="What the whole action is called.")] = "",
     on_unknown: Annotated[
         OnUnknown | None,
-        Option(
-            help="For a segment that no rule names: ask for a name (the default at a terminal), "
-            "keep it as Unknown (the default elsewhere), or fail."
-        ),
+        Option(help="What no rule names: ask (the default at a terminal), keep, or fail."),
     ] = None,
     rules: Rules = None,
     steady: Steady = None,
     set_: Set = None,
     json: Json = False,
-    script: Annotated[
-        bool, Option("--script", help="Print the complex PAR as the thesis's Python script.")
-    ] = False,
-    pars: Annotated[
-        bool, Option("--pars", help="Print every UPAR and IPAR as well, as text to diff.")
-    ] = False,
+    script: Annotated[bool, Option("--script", help="Print the PAR as a Python script.")] = False,
+    pars: Annotated[bool, Option("--pars", help="Print all UPARs and IPARs too.")] = False,
     plot: Plot = None,
     actionary: Annotated[
         str | None,
         Option(
             metavar="PATH|URL",
             envvar="CAPAR_ACTIONARY",
-            help="Keep the observation in this Actionary: a folder or a SPARQL server. "
-            "Rules in that folder count too.",
+            help="Keep it in this Actionary, whose rules count too.",
         ),
     ] = None,
     fit: Annotated[
         bool,
         Option(
-            "--fit",
-            help="Fit a human body first: its head and feet can be touched, and hands without a "
-            "shape get its surface.",
+            "--fit", help="Fit a human body first, and take its surface for hands, head and feet."
         ),
     ] = False,
     wait: Wait = 0.0,
     new: New = False,
     live: Annotated[
-        bool,
-        Option(
-            "--live", help="Print segments while they happen: of CAPTURE, replayed, or of --device."
-        ),
+        bool, Option("--live", help="Print segments while they happen, of CAPTURE or --device.")
     ] = False,
-    device: Annotated[
-        str, Option(help="With --live: a tracker's address; `capar devices` lists examples.")
-    ] = "",
-    rig: Annotated[
-        str, Option(help="With --device: a capture of the same bodies, such as an earlier take.")
-    ] = "",
+    device: Annotated[str, Option(help="With --live: a tracker's address (`capar devices`).")] = "",
+    rig: Annotated[str, Option(help="With --device: an earlier capture of the same bodies.")] = "",
     calibration: Annotated[
-        Path | None,
-        Option(help="With --live: what `capar inspect CAPTURE --calibration --json` printed."),
+        Path | None, Option(help="With --live: of `capar inspect --calibration --json`.")
     ] = None,
     lead_in: Annotated[
         float,
-        Option(
-            min=0.0,
-            metavar="SECONDS",
-            help="With --live: calibrate by so many first seconds; 0 by the whole CAPTURE.",
-        ),
+        Option(min=0.0, metavar="SECONDS", help="With --live: calibrate by these; 0 for all."),
     ] = 0.0,
     speed: Annotated[
-        float,
-        Option(
-            min=0.0,
-            help="With --live CAPTURE: how many times as fast to replay it; 0 as fast as it goes.",
-        ),
+        float, Option(min=0.0, help="With --live CAPTURE: times as fast; 0: no pause.")
     ] = 1.0,
     websocket: Annotated[
         int | None,
@@ -135,17 +105,12 @@ def observe(
             metavar="PORT",
             min=0,
             max=65535,
-            help="With --live: also send events as JSON to programs that connect to "
-            "ws://127.0.0.1:PORT; 0 takes a free port and says which. Needs capar[live].",
+            help="With --live: send events to ws://127.0.0.1:PORT too; 0 takes a free one.",
         ),
     ] = None,
     lsl_markers: Annotated[
         str,
-        Option(
-            metavar="NAME",
-            help="With --live: also send events as JSON in a Lab Streaming Layer stream of that "
-            "name and of type Markers. Needs capar[live].",
-        ),
+        Option(metavar="NAME", help="With --live: send events as Lab Streaming Layer Markers too."),
     ] = "",
 ) -> None:
     """Say what was done in a capture: named segments and their PAR.
@@ -215,9 +180,9 @@ def observe(
 
 
 def demo(
-    plot: Annotated[
-        Path, Option(help="Where to draw the picture: a .png, .svg or .pdf file.")
-    ] = Path("drink_from_mug.png"),
+    plot: Annotated[Path, Option(help="Where to draw it: .png, .svg or .pdf.")] = Path(
+        "drink_from_mug.png"
+    ),
 ) -> None:
     """Observe the shipped capture of drinking, and draw it."""
     from importlib import resources

@@ -3,6 +3,7 @@
 import dataclasses
 import errno
 import os
+import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -74,11 +75,43 @@ def answer(value: Any, lines: Iterable[object], *, json: bool, sort_keys: bool =
 
 def console() -> "Console":
     """Where tables go: as wide as the terminal, and in a pipe as wide as they have to be."""
-    import sys
-
     from rich.console import Console
 
     return Console(width=None if sys.stdout.isatty() else PIPE_COLUMNS)
+
+
+def print_table(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    *,
+    right: Collection[int] = frozenset(),
+    names: Collection[int] = frozenset(),
+    title: str = "",
+    caption: str = "",
+    sections: Collection[int] = (),
+) -> None:
+    """A table on standard output.
+
+    Args:
+        columns: Its heading.
+        rows: Cells of equally many columns.
+        right: Columns of numbers.
+        names: Columns that stay whole where the terminal is narrow.
+        title: What stands above it.
+        caption: What stands below it.
+        sections: Rows below which a line stands.
+    """
+    from rich.box import SIMPLE_HEAD
+    from rich.markup import escape
+
+    from capar.views.tables import terminal_table
+
+    table = terminal_table(columns, rows, right=right, names=names, title=title)
+    table.box, table.collapse_padding, table.pad_edge = SIMPLE_HEAD, True, False
+    table.caption = escape(caption) or None
+    for index in sections:
+        table.rows[index].end_section = True
+    console().print(table)
 
 
 def emit(text: str, output: Path | None) -> None:
@@ -125,8 +158,6 @@ def check_new_folder(folder: Path) -> None:
 
 def progress(doing: str) -> "Callable[[Sequence[Any]], Iterable[Any]]":
     """Goes through a sequence with a bar on standard error, if that is a terminal."""
-    import sys
-
     from rich.console import Console
     from rich.progress import track
 

@@ -94,21 +94,17 @@ def regenerate(
         str | None,
         Argument(
             metavar="[CAPTURE|ACTION]",
-            help="A capture's folder or capture.toml; FOLDER:TAKE for one of its takes. Or an "
-            "action that the Actionary holds, as a whole or as a step of a recording. With --say "
-            "it may be left out: the Actionary's recordings are then searched.",
+            help="A capture, or an action that the Actionary holds as a whole or as a step. With "
+            "--say it may be left out: the Actionary's recordings are then searched.",
         ),
     ] = None,
-    say: Annotated[
-        str | None,
-        Option(metavar="TEXT", help="What to do: 'pick up the mug and put it on the shelf'."),
-    ] = None,
+    say: Annotated[str | None, Option(metavar="TEXT", help="What to do, in words.")] = None,
     agent: Annotated[
         list[str] | None,
         Option(
-            help="Who performs: man, woman, child, or same (the one recorded, the default); for "
-            "an ACTION or with --object also an agent of the Actionary whose kind is one of these. "
-            "With several performers once for all, once for each in their order, or NAME=child."
+            help="man, woman, child, or same (as recorded, the default); for an ACTION or with "
+            "--object also an agent of the Actionary. For several performers, once for all, "
+            "once for each, or NAME=child."
         ),
     ] = None,
     things: Annotated[
@@ -116,61 +112,48 @@ def regenerate(
         Option(
             "--object",
             metavar="PART=THING",
-            help="The object of the scene that takes the part of a recorded one; may be repeated. "
-            "The other parts are taken by kind, or asked for where several objects fit.",
+            help="The scene's object in the part of a recorded one; may be repeated. The other "
+            "parts are taken by kind, or asked for.",
         ),
     ] = None,
     scene: Annotated[
         Path | None,
         Option(
-            help="A TOML file that changes the scene: [stance] place, heading_deg, floor_m; "
-            "[object.NAME] size, position, turn_deg, raise_m. Or a CAPTURE whose scene it is "
-            "done in, as always with --say."
+            help="A TOML file: [stance] place, heading_deg, floor_m; [object.NAME] size, position, "
+            "turn_deg, raise_m. Or a CAPTURE in whose scene it is done, as always with --say."
         ),
     ] = None,
     output: NewBundle = None,
     style: Annotated[
         str,
         Option(
-            help="What of the recorded motion is kept: path (shape and timing), frame (likewise, "
-            "scaled with the path), vel (timing), even (nothing: least jerk)."
+            help="What is kept: path (shape, timing), frame (scaled too), vel (timing) or even."
         ),
     ] = "path",
-    style_of: Annotated[
-        str | None, Option(help="Another capture of the same, whose style is taken.")
-    ] = None,
+    style_of: Annotated[str | None, Option(help="A capture whose style is taken.")] = None,
     duration: Annotated[float | None, Option(help="How long it takes [s].", min=0.1)] = None,
     hand: Annotated[str | None, Option(help="Which hand does it: right or left.")] = None,
     effort: Annotated[
         str | None,
         Option(
             metavar="NAME=VALUE,...",
-            help="In which manner, from -1 to 1 each, 0 being as recorded: time (sustained to "
-            "sudden), weight (light to strong), space (indirect to direct), flow (free to bound); "
-            "or by pole, as in sudden=0.6,light=0.3.",
+            help="The manner, from -1 to 1: time (sustained to sudden), weight (light to strong), "
+            "space (indirect to direct), flow (free to bound); or by pole: sudden=0.6,light=0.3.",
         ),
     ] = None,
     force: Annotated[
         str,
-        Option(
-            help="What of a blow or a throw is kept: similar (the force, in proportion to arm and "
-            "speed) or same (the object's motion; the hand strikes as fast as that takes)."
-        ),
+        Option(help="Of a blow or throw: similar (in proportion) or same (the object's motion)."),
     ] = "similar",
     step: Annotated[
         bool | None,
         Option(
             "--step/--no-step",
-            help="Where it is out of reach, step to where it can be done; the default for an "
-            "ACTION or with --object. Not with --say.",
+            help="Step to what is out of reach: the default for an ACTION or with --object.",
         ),
     ] = None,
     recordings: Annotated[
-        Path | None,
-        Option(
-            metavar="FOLDER",
-            help="With --say or an ACTION: the folder of the Actionary's captures; else this one.",
-        ),
+        Path | None, Option(metavar="FOLDER", help="Where the Actionary's captures are; else here.")
     ] = None,
     assume: Assume = None,
     actionary: Place = None,
@@ -497,13 +480,7 @@ def _perform_request(task: _Task, text: str) -> None:
     from capar.body.human import Human
     from capar.pipelines.language import vocabulary
     from capar.pipelines.recordings import observed_actions
-    from capar.pipelines.spoken_requests import (
-        Performance,
-        after,
-        choices,
-        perform,
-        read_requests,
-    )
+    from capar.pipelines.spoken_requests import Performance, after, choices, perform, read_requests
     from capar.pipelines.trials import trial_of
     from capar.regeneration.roles import captured_scene
 
@@ -682,13 +659,10 @@ def roundtrip(
         Option(
             "--agents",
             "--agent",
-            help="Who performs, separated by commas: man, woman, child, same. With several "
-            "performers man+child and so on, in their order; one alone is all of them.",
+            help="man, woman, child, same; of several performers man+child, in their order.",
         ),
     ] = "man,woman,child",
-    scenes: Annotated[
-        int, Option(min=0, help="How many scenes to draw; 0 performs in the recorded one.")
-    ] = 0,
+    scenes: Annotated[int, Option(min=0, help="Scenes to draw; 0 for the recorded one.")] = 0,
     seed: Annotated[int, Option(min=0, help="Of the drawn scenes.")] = 0,
     assume: Assume = None,
     json: Json = False,

@@ -1,6 +1,6 @@
 """The commands for rules that people write, from a first draft to their place in the rule base."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from itertools import groupby
 from pathlib import Path
@@ -20,7 +20,7 @@ from capar.cli.options import (
     require_actionary,
     rule_base,
 )
-from capar.cli.output import check_writable, emit, print_json
+from capar.cli.output import answer, check_writable, emit, print_json
 
 if TYPE_CHECKING:
     from capar.rulebook.changes import Renamed
@@ -63,12 +63,13 @@ def list_rules(
 
     place = opened(actionary)
     found = rules_of(rule_base(profile, rules, place), actionary=place)
-    if json:
-        print_json([asdict(each) for each in found])
-        return
-    for entry in found:
-        general = f" < {', '.join(entry.general)}" if entry.general else ""
-        typer.echo(f"{entry.origin}  {entry.name}{general}: {entry.definition}")
+    lines = (
+        f"{each.origin}  {each.name}"
+        + (f" < {', '.join(each.general)}" if each.general else "")
+        + f": {each.definition}"
+        for each in found
+    )
+    answer(found, lines, json=json)
 
 
 @rules.command()
@@ -90,15 +91,9 @@ def new(
     name: Annotated[str, Argument(help="What the primitive is called, such as Lift.")],
     source: Annotated[
         str | None,
-        Option(
-            "--from",
-            help="A segment whose features it has, as CAPTURE/END_EFFECTOR/INDEX. "
-            "CAPTURE may also be the name of an observation in the Actionary.",
-        ),
+        Option("--from", help="A segment of a capture or observation: NAME/END_EFFECTOR/INDEX."),
     ] = None,
-    features: Annotated[
-        str | None, Option(help="START,END,CHANGE,FORCE in bits, such as 100,101,10,00.")
-    ] = None,
+    features: Annotated[str | None, Option(help="In bits, such as 100,101,10,00.")] = None,
     definition: Annotated[str, Option(help="What it is, in words.")] = "",
     general: Annotated[str, Option(help="The primitive that it specialises.")] = "",
     verb: Annotated[str, Option(help="The verb for it.")] = "",
@@ -145,13 +140,8 @@ def check(
     from capar_rules.lint.findings import errors
 
     findings = checked(file, profile=profile, beside=_others(file, rules, actionary))
-    if json:
-        print_json([each.as_json() for each in findings])
-    else:
-        for finding in findings:
-            typer.echo(str(finding))
-        if not findings:
-            typer.echo(f"{file}: nothing is wrong")
+    lines = findings or [f"{file}: nothing is wrong"]
+    answer([each.as_json() for each in findings], lines, json=json)
     if errors(findings):
         raise typer.Exit(2)
 
@@ -181,16 +171,10 @@ def add(
     file: File,
     over: Annotated[
         list[str] | None,
-        Option(
-            help="A primitive that it precedes where both fit; may be repeated. all stands for "
-            "each that names a segment with it, or may. It is written into the file."
-        ),
+        Option(help="A primitive that it precedes where both fit, or all; may be repeated."),
     ] = None,
     kind_of: Annotated[
-        list[str] | None,
-        Option(
-            help="A primitive that it is a kind of; may be repeated. It is written into the file."
-        ),
+        list[str] | None, Option(help="A primitive that it is a kind of; may be repeated.")
     ] = None,
     reclassify: Reclassify = False,
     captures: Captures = None,
@@ -218,17 +202,17 @@ def add(
         require_actionary(actionary)
     make_folder(folder)
     beside = _others(file, rules, actionary)
-    effect = None
+    stated = (over or (), kind_of or ())
     if reclassify:
         added, effect = add_reclassifying(
-            file, folder=folder, actionary=actionary, base=profile, over=over or (),
-            kind_of=kind_of or (), beside=beside, captures=captures or [Path()],
+            file, folder=folder, actionary=actionary, base=profile, over=stated[0],
+            kind_of=stated[1], beside=beside, captures=captures or [Path()],
         )  # fmt: skip
     else:
+        effect = None
         added = add_rule(
-            file, folder=folder, base=profile, over=over or (), kind_of=kind_of or (),
-            beside=beside,
-        )  # fmt: skip
+            file, folder=folder, base=profile, over=stated[0], kind_of=stated[1], beside=beside
+        )
     typer.echo(f"added {added}")
     for name, others in preceded(added).items() if over else ():
         typer.echo(f"{name} precedes {', '.join(others) or 'nothing'}; {added} says so")
@@ -287,8 +271,7 @@ def remove(
 def diff(
     file: File,
     on: Annotated[
-        list[str] | None,
-        Option(help="A capture to compare on, instead of the Actionary; may be repeated."),
+        list[str] | None, Option(help="A capture, instead of the Actionary; may be repeated.")
     ] = None,
     profile: ProfileName = "extended",
     rules: Rules = None,
@@ -316,7 +299,7 @@ def diff(
         seen, others = kept.seen, kept.others
     changes = renamed(seen, before=before, after=after)
     if json:
-        print_json([asdict(each) for each in changes])
+        print_json(changes)
     _print_changes(() if json else changes, others, counted=not json)
 
 
@@ -331,10 +314,7 @@ def audit(
     from capar_rules.lint.world_checks import audit as audited
 
     found = audited(rule_base(profile, rules, opened(actionary)))
-    if json:
-        print_json({**asdict(found), "clean": found.clean})
-    else:
-        _print_audit(found)
+    answer({**asdict(found), "clean": found.clean}, _audit_lines(found), json=json)
     if not found.clean:
         raise typer.Exit(1)
 
@@ -354,24 +334,19 @@ def list_words(
     from capar_rules.authoring.glossary import glossary
 
     found = glossary(rule_base(profile, rules, opened(actionary)))
-    if json:
-        rows = [
-            {
-                "name": word.name,
-                "arguments": list(word.arguments),
-                "meaning": word.meaning,
-                "file": word.file,
-                "line": word.line,
-                "needs": [list(way) for way in found.needed(word.signature)],
-                "defined": [str(each) for each in found.rules_of(word.signature)],
-            }
-            for word in (found.find(name) if name else found.words)
-        ]
-        print_json(rows)
-    elif name:
-        _print_word(found, name)
-    else:
-        _print_glossary(found)
+    rows = [
+        {
+            "name": word.name,
+            "arguments": word.arguments,
+            "meaning": word.meaning,
+            "file": word.file,
+            "line": word.line,
+            "needs": found.needed(word.signature),
+            "defined": [str(each) for each in found.rules_of(word.signature)],
+        }
+        for word in (found.find(name) if name else found.words)
+    ]
+    answer(rows, _word_lines(found, name) if name else _glossary_lines(found), json=json)
 
 
 def _print_changes(
@@ -412,13 +387,13 @@ def _print_changes(
         typer.echo(f"observations made with another profile, left alone: {len(others)}", err=True)
 
 
-def _print_audit(found: "Audit") -> None:
+def _audit_lines(found: "Audit") -> Iterator[str]:
     """What an audit found, and whether the rules are clean.
 
     Every feature set without a name is listed under its reason, a line for the relations at its
     ends; what follows each is change of location and force.
     """
-    typer.echo(f"{found.possible} feature sets can be; {len(found.uncovered)} have no name:")
+    yield f"{found.possible} feature sets can be; {len(found.uncovered)} have no name:"
     reasons = dict(found.excused)
     groups: dict[str, dict[str, list[str]]] = {}
     for start, end, change, force in found.uncovered:
@@ -426,52 +401,48 @@ def _print_audit(found: "Audit") -> None:
         ends = f"{start or '-'} > {end or '-'}"
         groups.setdefault(reason, {}).setdefault(ends, []).append(f"{change or '-'}/{force or '-'}")
     for reason, cases in groups.items():
-        typer.echo(f"  {sum(map(len, cases.values()))}: {reason}")
-        for ends, rest in cases.items():
-            typer.echo(f"    {ends}  {' '.join(rest)}")
+        yield f"  {sum(map(len, cases.values()))}: {reason}"
+        yield from (f"    {ends}  {' '.join(rest)}" for ends, rest in cases.items())
     for clash in found.ambiguous:
         where = " ".join(part or "-" for part in clash.features[0])
-        typer.echo(f"ambiguous: {clash.first} and {clash.second}, first at {where}")
-    for name in found.shadowed:
-        typer.echo(f"shadowed: {name}")
+        yield f"ambiguous: {clash.first} and {clash.second}, first at {where}"
+    yield from (f"shadowed: {name}" for name in found.shadowed)
     for name in found.unreachable:
-        typer.echo(f"never fits in the worlds of the audit: {name} (`capar rules check` says why)")
+        yield f"never fits in the worlds of the audit: {name} (`capar rules check` says why)"
     for name in found.unchecked:
-        typer.echo(
+        yield (
             f"not checked: {name}; its conditions are outside the worlds of the audit "
             "(`capar rules check` lists them)"
         )
-    typer.echo("the rules are clean" if found.clean else "the rules are not clean")
+    yield "the rules are clean" if found.clean else "the rules are not clean"
 
 
-def _print_glossary(found: "Glossary") -> None:
+def _glossary_lines(found: "Glossary") -> Iterator[str]:
     """Every word, file by file, and what each file keeps to itself."""
     within: dict[str, list[str]] = {}
     for file, (name, arity) in found.internal:
         within.setdefault(file, []).append(f"{name}/{arity}")
-    for file, words in groupby(found.words, key=lambda each: each.file):
-        typer.echo(file)
-        for word in words:
-            typer.echo(f"  {word}  {word.meaning}")
+    words = {file: list(own) for file, own in groupby(found.words, key=lambda each: each.file)}
+    for file in dict.fromkeys((*words, *within)):
+        yield file
+        yield from (f"  {word}  {word.meaning}" for word in words.get(file, ()))
         if file in within:
-            typer.echo(f"  within this file alone: {', '.join(within.pop(file))}")
-        typer.echo()
-    for file, names in within.items():
-        typer.echo(f"{file}\n  within this file alone: {', '.join(names)}\n")
+            yield f"  within this file alone: {', '.join(within[file])}"
+        yield ""
 
 
-def _print_word(found: "Glossary", name: str) -> None:
+def _word_lines(found: "Glossary", name: str) -> Iterator[str]:
     """One word: what it means, where it is explained, and the rules that define it."""
     words = found.find(name)
     for each in words:
-        typer.echo(f"{each}  {each.meaning}")
-        typer.echo(f"  explained in {each.file}:{each.line}" if each.line else f"  in {each.file}")
+        yield f"{each}  {each.meaning}"
+        yield f"  explained in {each.file}:{each.line}" if each.line else f"  in {each.file}"
     for signature in dict.fromkeys(word.signature for word in words):
         if ways := found.needed(signature):
             told = "; or ".join(", ".join(way) for way in ways)
-            typer.echo(f"  an example needs, beside frames, links and tags: {told}")
+            yield f"  an example needs, beside frames, links and tags: {told}"
         for place in found.rules_of(signature):
             lines = Path(place.file).read_text(encoding="utf-8").splitlines()[place.line - 1 :]
             ends = (at for at, each in enumerate(lines, 1) if each.rstrip().endswith("."))
-            text = "\n".join(f"    {each}" for each in lines[: next(ends, len(lines))])
-            typer.echo(f"  defined at {place}\n{text}")
+            yield f"  defined at {place}"
+            yield from (f"    {each}" for each in lines[: next(ends, len(lines))])

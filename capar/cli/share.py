@@ -3,23 +3,28 @@
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 from typer import Argument, Option
 
-from capar.cli.options import Json, New, Place, Wait, confirm_new, opened, require_actionary
-
-if TYPE_CHECKING:
-    from capar.export.plans import PlanSource
+from capar.cli.options import (
+    Json,
+    New,
+    Place,
+    Wait,
+    confirm_new,
+    has_actionary,
+    opened,
+    require_actionary,
+)
+from capar.cli.output import answer, check_new_folder, check_writable, emit, save
+from capar.model.errors import CaparError, FileError, UnknownNameError
 
 
 def import_(
     file: Annotated[str, Argument(help="The file, or - for standard input.")],
-    format_: Annotated[
-        str | None,
-        Option("--format", help="turtle, trig, nquads or jsonld; else by the file's name."),
-    ] = None,
+    format_: Annotated[str | None, Option("--format", help="turtle, trig, nquads, jsonld.")] = None,
     wait: Wait = 0.0,
     new: New = False,
     actionary: Place = None,
@@ -41,8 +46,6 @@ def import_(
 
 
 def _bytes(file: str) -> bytes:
-    from capar.model.errors import FileError
-
     if file == "-":
         return sys.stdin.buffer.read()
     try:
@@ -56,41 +59,30 @@ def export(
         Path | None,
         Argument(
             metavar="[FILE|CAPTURE|OBSERVATION]",
-            help="Where to; standard output if left out. Of a plan: the capture, or the stored "
-            "observation, whose action is written.",
+            help="Where to; else standard output. Of a plan, whose action it is.",
         ),
     ] = None,
     format_: Annotated[
         str | None,
         Option(
-            "--format",
-            help="turtle, trig, nquads, jsonld or rdfxml; else by the file's name. Of a plan: "
-            "pddl (domain and problem), bt (BehaviorTree.CPP 4) or bml (BML 1.0).",
+            "--format", help="turtle, trig, nquads, jsonld or rdfxml; of a plan pddl, bt or bml."
         ),
     ] = None,
     output: Annotated[
-        Path | None,
-        Option(help="Of a plan: a file, or for pddl a new folder; else standard output."),
+        Path | None, Option(help="Of a plan: a file, or for pddl a new folder.")
     ] = None,
-    observation: Annotated[
-        str | None, Option(help="Only this observation, with all that it mentions.")
-    ] = None,
-    soma: Annotated[
-        bool,
-        Option(
-            "--soma", help="Write the observation as an episode in terms of SOMA and DUL alone."
-        ),
-    ] = False,
+    observation: Annotated[str | None, Option(help="Only this one, with what it mentions.")] = None,
+    soma: Annotated[bool, Option("--soma", help="An episode in terms of SOMA and DUL.")] = False,
     actionary: Place = None,
 ) -> None:
     """Export the Actionary or an observation as RDF, or a plan.
 
     With --format pddl, bt or bml: the action of CAPTURE or OBSERVATION as a plan for others.
     """
-    from capar.cli.output import check_writable, written
-    from capar.model.errors import CaparError, UnknownNameError
     from capar.pipelines.plan_export import PLAN_FORMATS
-    from kb.exchange import FORMATS
+    from kb import Actionary
+    from kb.exchange import FORMATS, export_episode, format_of, misplaced
+    from kb.exchange import export as exported
 
     if format_ is not None and format_ not in {*FORMATS, *PLAN_FORMATS}:
         raise UnknownNameError("format", format_, [*FORMATS, *PLAN_FORMATS])
@@ -104,10 +96,6 @@ def export(
             "--output is of a plan (--format pddl, bt or bml); RDF goes to FILE: "
             "`capar export FILE --format trig`"
         )
-    from kb import Actionary
-    from kb.exchange import export as exported
-    from kb.exchange import export_episode, format_of, misplaced
-
     if soma and observation is None:
         raise CaparError("--soma writes one episode; name it by --observation")
     chosen = format_of(file or "", format_ or (None if file else "trig"))
@@ -118,9 +106,8 @@ def export(
             data = export_episode(opened.store, chosen, observation)
         else:
             data = exported(opened.store, chosen, observation=observation)
-        lost = (
-            misplaced(opened.store) if chosen in {"turtle", "rdfxml"} and observation is None else 0
-        )
+        graphless = chosen in {"turtle", "rdfxml"} and observation is None
+        lost = misplaced(opened.store) if graphless else 0
     if lost:
         typer.echo(
             f"capar: {chosen} has no graphs; {lost} statements would come back in another one. "
@@ -129,18 +116,19 @@ def export(
         )
     if file is None:
         sys.stdout.buffer.write(data)
-        return
-    with written(file) as draft:
-        draft.write_bytes(data)
-    what = f"observation {observation}" if observation else "everything"
-    typer.echo(f"wrote {what} to {file}: {len(data):,} bytes of {chosen}", err=True)
+    else:
+        save(
+            file, data, f"wrote {observation or 'everything'}, {len(data):,} bytes of {chosen}, to"
+        )
 
 
 def _export_plan(name: str, format_: str, output: Path | None, actionary: str | None) -> None:
-    """Write a complex action as a plan; PDDL's two files go to a folder."""
-    from capar.cli.output import check_new_folder, check_writable, written
-    from capar.model.errors import CaparError
-    from capar.pipelines.plan_export import plan_files
+    """Write a complex action as a plan; PDDL's two files go to a folder.
+
+    The action is that of a capture at a path, else of an observation in the Actionary.
+    """
+    from capar.pipelines.plan_export import capture_plan, plan_files, stored_plan
+    from kb import Actionary
 
     if not name:
         raise CaparError(f"--format {format_} writes one action; name a capture or an observation")
@@ -149,42 +137,30 @@ def _export_plan(name: str, format_: str, output: Path | None, actionary: str | 
         raise CaparError("PDDL is two files, a domain and a problem; name a folder by --output")
     if output is not None:
         (check_new_folder if folder else check_writable)(output)
-    files = plan_files(_plan_source(name, actionary), format_)
+    place = opened(actionary)
+    if Path(name).exists() or Path(name.rpartition(":")[0] or name).exists():
+        source = capture_plan(name)
+    elif has_actionary(place, named=actionary):
+        with Actionary.open(place, read_only=True) as words:
+            source = stored_plan(words, name)
+    else:
+        raise FileError(
+            name, f"is no capture, and {place} is no Actionary that could hold an observation.",
+            "Name a capture's folder, or an Actionary by --actionary.",
+        )  # fmt: skip
+    files = plan_files(source, format_)
     if output is None:
         typer.echo("".join(files.values()), nl=False)
         return
     if folder:
         output.mkdir(exist_ok=True)
     for file, text in files.items():
-        with written(output / file if folder else output) as draft:
-            draft.write_text(text, "utf-8")
+        emit(text, output / file if folder else output)
     typer.echo(f"wrote {name} to {output} as {format_}", err=True)
 
 
-def _plan_source(name: str, actionary: str | None) -> "PlanSource":
-    """The action of a capture at a path, else of an observation in the Actionary."""
-    from capar.cli.options import has_actionary, opened
-    from capar.model.errors import FileError
-    from capar.pipelines.plan_export import capture_plan, stored_plan
-    from kb import Actionary
-
-    if Path(name).exists() or Path(name.rpartition(":")[0] or name).exists():
-        return capture_plan(name)
-    place = opened(actionary)
-    if not has_actionary(place, named=actionary):
-        raise FileError(
-            name, f"is no capture, and {place} is no Actionary that could hold an observation.",
-            "Name a capture's folder, or an Actionary by --actionary.",
-        )  # fmt: skip
-    with Actionary.open(place, read_only=True) as words:
-        return stored_plan(words, name)
-
-
 def backup(
-    file: Annotated[
-        Path | None,
-        Argument(help="Where to, as N-Quads; else beside the Actionary, by date and time."),
-    ] = None,
+    file: Annotated[Path | None, Argument(help="Where to; else beside the Actionary.")] = None,
     json: Json = False,
     actionary: Place = None,
 ) -> None:
@@ -193,8 +169,6 @@ def backup(
     The rules are written beside it.
     `capar import FILE --actionary FOLDER` makes it again, in a folder that is not there yet.
     """
-    from capar.cli.output import print_json
-    from capar.model.errors import FileError
     from capar_rules.authoring.user_rules import actionary_rules
     from kb import Actionary
     from kb.exchange import back_up, back_up_rules
@@ -204,19 +178,14 @@ def backup(
     place = opened(actionary)
     if file is None and is_address(place):
         raise FileError(place, "is a server.", "Say where its backup goes: capar backup FILE.nq")
-    target = file or _beside(Path(place).absolute())
+    folder, now = Path(place).absolute(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
+    target = file or folder.with_name(f"{folder.name}.{now}.nq")
     with Actionary.open(actionary, read_only=True) as book:
         statements = back_up(book.store, target)
-    rules = back_up_rules(actionary_rules(place), target)
-    if json:
-        print_json({"file": str(target), "statements": statements, "rules": list(map(str, rules))})
-        return
-    typer.echo(f"{target}: {statements} statements")
-    for rule_file in rules:
-        typer.echo(str(rule_file))
-    typer.echo(f"To restore: capar import {target} --actionary NEW_FOLDER --new")
-
-
-def _beside(folder: Path) -> Path:
-    now = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
-    return folder.with_name(f"{folder.name}.{now}.nq")
+    rules = [str(each) for each in back_up_rules(actionary_rules(place), target)]
+    restored = f"To restore: capar import {target} --actionary NEW_FOLDER --new"
+    answer(
+        {"file": str(target), "statements": statements, "rules": rules},
+        [f"{target}: {statements} statements", *rules, restored],
+        json=json,
+    )

@@ -2,6 +2,8 @@
 
 import math
 import time
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from shlex import quote
@@ -11,21 +13,17 @@ import typer
 from typer import Argument, Option
 
 from capar.cli.options import Json
-from capar.cli.output import print_json
+from capar.cli.output import answer
 
 if TYPE_CHECKING:
     from extractors.devices.tracker import LiveTracker
 
-Seconds = Annotated[
-    float, Option("--seconds", min=0.0, help="How long; 0 until it is interrupted.")
-]
+Seconds = Annotated[float, Option(min=0.0, help="How long; 0 until it is interrupted.")]
 
 
 def devices(
-    address: Annotated[
-        str, Argument(help="A device address; without one, drivers and ports are listed.")
-    ] = "",
-    seconds: Annotated[float, Option("--seconds", min=0.1, help="How long to watch it.")] = 2.0,
+    address: Annotated[str, Argument(help="A device's; else drivers and ports are listed.")] = "",
+    seconds: Annotated[float, Option(min=0.1, help="How long to watch it.")] = 2.0,
     json: Json = False,
 ) -> None:
     """List trackers and serial ports, or print what one sends."""
@@ -36,17 +34,14 @@ def devices(
         report = _watched(find_tracker(address), seconds)
     else:
         report = {"drivers": EXAMPLES, "ports": find_ports()}
-    if json:
-        print_json(report, sort_keys=True)
-    elif address:
-        _show(report)
-    else:
-        typer.echo("drivers, each with an address:")
-        for name, example in report["drivers"].items():
-            typer.echo(f"  {name:<11} {example}")
-        typer.echo("serial ports:" if report["ports"] else "no serial ports")
-        for port, what in report["ports"].items():
-            typer.echo(f"  {port:<11} {what}")
+    answer(report, _lines(report) if address else _drivers(report), json=json, sort_keys=True)
+
+
+def _drivers(report: dict[str, Any]) -> Iterator[str]:
+    yield "drivers, each with an address:"
+    yield from (f"  {name:<11} {example}" for name, example in report["drivers"].items())
+    yield "serial ports:" if report["ports"] else "no serial ports"
+    yield from (f"  {port:<11} {what}" for port, what in report["ports"].items())
 
 
 def _watched(tracker: "LiveTracker", seconds: float) -> dict[str, Any]:
@@ -67,36 +62,33 @@ def _watched(tracker: "LiveTracker", seconds: float) -> dict[str, Any]:
         "counts": asdict(tracker.counts),
         "events": [each.message for each in tracker.events],
         "positions_m": {
-            name: _numbers(last.positions[index]) if last else None
+            name: _position(last.positions[index]) if last else None
             for index, name in enumerate(description.sensors)
         },
     }
 
 
-def _numbers(position: Any) -> list[float] | None:
+def _position(position: Any) -> list[float] | None:
     """A position, or None where it is lost; JSON has no NaN."""
     return [float(each) for each in position] if all(map(math.isfinite, position)) else None
 
 
-def _show(report: dict[str, Any]) -> None:
+def _lines(report: dict[str, Any]) -> Iterator[str]:
     details = ", ".join(f"{name} {value}" for name, value in report["details"].items())
-    typer.echo(f"{report['kind']} {report['model']} {details}".rstrip())
+    yield f"{report['kind']} {report['model']} {details}".rstrip()
     counts = report["counts"]
-    typer.echo(
+    yield (
         f"{counts['frames']} frames at {report['rate_hz']:.1f} Hz, {counts['lost_records']} poses "
         f"lost, {counts['refused_records']} refused, {counts['dropped_bytes']} bytes dropped"
     )
     for name, position in report["positions_m"].items():
         place = "no position" if position is None else " ".join(f"{v:7.3f}" for v in position)
-        typer.echo(f"  {name:<16} {place}")
-    for message in report["events"]:
-        typer.echo(message)
+        yield f"  {name:<16} {place}"
+    yield from report["events"]
 
 
 def record(
-    source: Annotated[
-        str, Argument(help="A device address, or the file of a recording that was cut off.")
-    ],
+    source: Annotated[str, Argument(help="A device's address, or a recording cut off.")],
     output: Annotated[Path, Argument(help="The folder of the capture bundle to make.")],
     seconds: Seconds = 0.0,
     json: Json = False,
@@ -119,20 +111,17 @@ def record(
     write_bundle(recording, output)
     counts = asdict(recording.counts) if recording.counts else None
     names = list(recording.description.sensors)
-    if json:
-        report = {
-            "recording": str(live),
-            "bundle": str(output),
-            "frames": len(recording.host_s),
-            "sensors": names,
-            "counts": counts,
-            "events": [each.message for each in recording.events],
-        }
-        print_json(report, sort_keys=True)
-        return
+    report = {
+        "recording": str(live),
+        "bundle": str(output),
+        "frames": len(recording.host_s),
+        "sensors": names,
+        "counts": counts,
+        "events": [each.message for each in recording.events],
+    }
     lost = f", {counts['lost_records']} poses lost" if counts else "; the recording was cut off"
-    typer.echo(f"{len(recording.host_s)} frames of {', '.join(names)}{lost}")
-    typer.echo(f"wrote {output} from {live}")
+    said = f"{len(recording.host_s)} frames of {', '.join(names)}{lost}"
+    answer(report, [said, f"wrote {output} from {live}"], json=json, sort_keys=True)
 
 
 def _record(address: str, path: Path, seconds: float) -> None:
@@ -158,22 +147,12 @@ def _record(address: str, path: Path, seconds: float) -> None:
 
 def simulate(
     kind: Annotated[str, Argument(help="flock, motionstar, fastrak or vrpn.")],
-    capture: Annotated[
-        str, Option("--capture", help="A capture to play in a loop; else a made-up motion.")
-    ] = "",
-    sensors: Annotated[
-        int, Option("--sensors", min=1, max=13, help="Sensors of the made-up motion.")
-    ] = 4,
-    erc: Annotated[
-        bool, Option("--erc", help="Flock: with an extended-range controller as unit 1.")
-    ] = False,
-    lost: Annotated[
-        float, Option("--lost", min=0.0, max=1.0, help="Share of bytes or packets lost.")
-    ] = 0.0,
-    garbled: Annotated[
-        float, Option("--garbled", min=0.0, max=1.0, help="Share of bytes garbled.")
-    ] = 0.0,
-    port: Annotated[int, Option("--port", help="TCP or UDP port; 0 takes a free one.")] = 0,
+    capture: Annotated[str, Option(help="A capture to play in a loop.")] = "",
+    sensors: Annotated[int, Option(min=1, max=13, help="Of the made-up motion.")] = 4,
+    erc: Annotated[bool, Option("--erc", help="With an extended-range unit 1.")] = False,
+    lost: Annotated[float, Option(min=0.0, max=1.0, help="Share of bytes lost.")] = 0.0,
+    garbled: Annotated[float, Option(min=0.0, max=1.0, help="Share of bytes garbled.")] = 0.0,
+    port: Annotated[int, Option(help="TCP or UDP port; 0 takes a free one.")] = 0,
     seconds: Seconds = 0.0,
     json: Json = False,
 ) -> None:
@@ -193,15 +172,12 @@ def simulate(
         motion = CapturedMotion(read_capture(capture))
         names = f"&names={','.join(motion.sensors)}"
     simulator, options = make_simulator(kind, motion, Faults(lost, garbled), erc=erc, port=port)
-    with simulator:
+    with simulator, suppress(KeyboardInterrupt):
         address = f"{kind}:{simulator.place}?{options}{names}"
         typer.echo(codec.dumps({"address": address}) if json else address)
         if not json:
             # The shell would take an address that is not quoted for several commands.
             typer.echo(f"in another terminal: capar record {quote(address)} FOLDER", err=True)
         end = time.monotonic() + seconds
-        try:
-            while not seconds or time.monotonic() < end:
-                time.sleep(0.1)
-        except KeyboardInterrupt:
-            return
+        while not seconds or time.monotonic() < end:
+            time.sleep(0.1)
