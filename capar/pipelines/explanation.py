@@ -19,7 +19,7 @@ from capar.views.explanation_plot import Panel, Plot
 from capar_rules.authoring.user_primitives import rules_of
 from capar_rules.borders.ticks import times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.explain.conditions import Measured
+from capar_rules.explain.conditions import Condition, Measured
 from capar_rules.explain.explanation import Explainer, Explanation
 from capar_rules.explain.nearest import NearRule
 from capar_rules.explain.quantities import QUANTITIES
@@ -50,7 +50,15 @@ class Explained:
         Raises:
             RuleError: A segment does not follow from the facts and rules.
         """
-        return tuple(map(self._completed, self.explainer.explain_all(segments)))
+        return tuple(
+            replace(
+                told,
+                conditions=self._filled(told.conditions),
+                nearest=told.nearest
+                and replace(told.nearest, failing=self._filled(told.nearest.failing)),
+            )
+            for told in self.explainer.explain_all(segments)
+        )
 
     def nearest_rules(self, segment: Segment, name: str) -> list[NearRule]:
         """The rule that could give a segment another name, with the conditions that fail.
@@ -59,8 +67,10 @@ class Explained:
             RuleError: The segment does not follow from the facts and rules.
         """
         found = self.explainer.nearest_rules(segment, name)
-        fill = self.measures.completed
-        return [replace(one, failing=tuple(map(fill, one.failing))) for one in found]
+        return [replace(one, failing=self._filled(one.failing)) for one in found]
+
+    def _filled(self, conditions: Sequence[Condition]) -> tuple[Condition, ...]:
+        return tuple(map(self.measures.completed, conditions))
 
     @cached_property
     def unshaped(self) -> set[str]:
@@ -68,12 +78,6 @@ class Explained:
         bodies = self.measures.measurements.bodies
         every = {**bodies.objects, **bodies.sensors}
         return {name for name, body in every.items() if body.shape is None}
-
-    def _completed(self, told: Explanation) -> Explanation:
-        near, fill = told.nearest, self.measures.completed
-        if near is not None:
-            near = replace(near, failing=tuple(map(fill, near.failing)))
-        return replace(told, conditions=tuple(map(fill, told.conditions)), nearest=near)
 
     @cached_property
     def _definitions(self) -> dict[str, str]:
@@ -86,15 +90,16 @@ class Explained:
         return {name: self._definitions[name] for name in names if name in self._definitions}
 
 
-def explained(capture: Capture, *, rules: Profile) -> Explained:
+def explained(capture: Capture, *, rules: Profile | str) -> Explained:
     """Observe a capture and make ready to explain it.
 
     Raises:
         CaparError: The capture or the rules have a fault.
     """
     measurements = measure(capture)
-    observation = observe_measured(capture, measurements, rules=rules)
-    explainer = Explainer(observation.facts, rules, body_names(observation))
+    base = profile(rules) if isinstance(rules, str) else rules
+    observation = observe_measured(capture, measurements, rules=base)
+    explainer = Explainer(observation.facts, base, body_names(observation))
     return Explained(observation, explainer, Measures(observation, measurements))
 
 
@@ -112,7 +117,7 @@ def explain(
         UnknownNameError: There is no such segment.
         CaparError: The capture or the rules have a fault.
     """
-    seen = _explained(capture, rules)
+    seen = explained(trial_of(capture), rules=rules)
     return seen.explain(chosen(seen.observation, segment))
 
 
@@ -137,13 +142,8 @@ def why_not(
         UnknownNameError: There is no such segment, or no rule gives that name.
         RuleError: The segment has that name.
     """
-    seen = _explained(capture, rules)
+    seen = explained(trial_of(capture), rules=rules)
     return alternatives(seen.explainer, segment_named(seen.observation, segment), name, limit=limit)
-
-
-def _explained(capture: Capture | Path | str, rules: Profile | str) -> Explained:
-    trial = trial_of(capture)
-    return explained(trial, rules=profile(rules) if isinstance(rules, str) else rules)
 
 
 def chosen(observation: Observation, text: str) -> tuple[Segment, ...]:
@@ -205,9 +205,9 @@ def explanation_plot(seen: Explained, told: Explanation) -> Plot:
         series = measures.series(every[0], frames)
         if series is not None:
             panels.append(_panel(every, series, rate))
-    title = f"{SegmentAddress(told.ee, told.index)}  {told.name}  "
     return Plot(
-        f"{title}{told.start_s:.2f} to {told.end_s:.2f} s",
+        f"{SegmentAddress(told.ee, told.index)}  {told.name}  "
+        f"{told.start_s:.2f} to {told.end_s:.2f} s",
         told.summary,
         (first / rate, last / rate),
         (segment.first / rate, segment.last / rate),
@@ -222,33 +222,27 @@ def explanation_plot(seen: Explained, told: Explanation) -> Plot:
 
 def _panel(every: Sequence[Measured], series: Series, rate_hz: float) -> Panel:
     """The panel of what conditions measure of one quantity of certain bodies."""
-    scale, unit = QUANTITIES[every[0].quantity].scale, every[0].unit
-    limits = {(one.limit, one.limit_text) for one in every if one.limit is not None}
-    marks = dict.fromkeys(
-        (_frame(one, one.value, series, rate_hz) / rate_hz, one.value, one.value_text)
-        for one in every
-        if one.value is not None
-    )
-    bars = tuple((begin / rate_hz, end / rate_hz) for begin, end in series.bars)
+    first = every[0]
+    scale, unit = QUANTITIES[first.quantity].scale, first.unit
+    marks = {}
+    for one in every:
+        if one.value is not None:
+            # Where the curve has the value, near the frame that counts: rules compare some
+            # quantities at an event that is merged with the border.
+            frame = series.frame(one.first, one.last)
+            near = np.abs(series.frames - frame) <= times().merge_ms / 1000.0 * rate_hz
+            off = np.abs(series.values * scale - one.value)
+            off[~near | np.isnan(off)] = np.inf
+            if np.isfinite(off).any():
+                frame = int(series.frames[np.argmin(off)])
+            marks[frame / rate_hz, one.value, one.value_text] = None
     return Panel(
-        f"{every[0].label} [{unit}]" if unit else every[0].label,
+        f"{first.label} [{unit}]" if unit else first.label,
         series.frames / rate_hz,
         series.values * scale,
         unit,
-        tuple(sorted(limits)),
+        tuple(sorted({(o.limit, o.limit_text) for o in every if o.limit is not None})),
         tuple(marks),
-        bars,
+        tuple((begin / rate_hz, end / rate_hz) for begin, end in series.bars),
         series.held,
     )
-
-
-def _frame(one: Measured, value: float, series: Series, rate_hz: float) -> int:
-    """The frame at which a value is marked: where the curve has it, near the one that counts.
-
-    Rules compare some quantities at an event that is merged with the border.
-    """
-    counted = series.frame(one.first, one.last)
-    near = np.abs(series.frames - counted) <= times().merge_ms / 1000.0 * rate_hz
-    off = np.abs(series.values * QUANTITIES[one.quantity].scale - value)
-    off[~near | np.isnan(off)] = np.inf
-    return counted if np.isinf(off).all() else int(series.frames[np.argmin(off)])

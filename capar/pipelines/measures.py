@@ -45,6 +45,7 @@ HALF_RIGHT_MRAD = 1000.0 * math.pi / 4.0
 
 Frames = Int[np.ndarray, "some"]
 Values = Float[np.ndarray, "some"]
+Displacement = Float[np.ndarray, "frames 3"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,11 +76,6 @@ class Series:
         known = self.frames[inside]
         return int(known[np.argmax(self.values[inside])] if self.most else known[-1])
 
-    def within(self, first: int, last: int) -> float | None:
-        """The value that counts of an interval; None if it is not known."""
-        values = self.values[self.frames == self.frame(first, last)]
-        return float(values[0]) if len(values) and not np.isnan(values[0]) else None
-
 
 @dataclass(frozen=True, eq=False)
 class Measures:
@@ -95,8 +91,7 @@ class Measures:
 
     def completed(self, condition: Condition) -> Condition:
         """A condition with the values that extractors compared, and no rule."""
-        measures = (self._completed(one) for one in condition.measures)
-        known = tuple(one for one in measures if one is not None)
+        known = tuple(filter(None, map(self._completed, condition.measures)))
         return replace(condition, measures=known)
 
     def _completed(self, asked: Measured) -> Measured | None:
@@ -114,13 +109,15 @@ class Measures:
     def _valued(self, asked: Measured) -> Measured | None:
         frames = np.unique([asked.first, asked.last])
         series = self.series(asked, frames if asked.quantity == "distance" else None)
-        value = None if series is None else series.within(asked.first, asked.last)
-        if series is None or value is None or not math.isfinite(value):
+        if series is None:
+            return None
+        at = series.values[series.frames == series.frame(asked.first, asked.last)]
+        if not len(at) or not math.isfinite(at[0]):
             return None
         scale = QUANTITIES[asked.quantity].scale
         limits = series.limits
         limit = (min if asked.relation == ">" else max)(limits) * scale if limits else None
-        return replace(asked, value=value * scale, limit=limit)
+        return replace(asked, value=float(at[0]) * scale, limit=limit)
 
     def series(self, asked: Measured, frames: Frames | None = None) -> Series | None:
         """A quantity over time; None if it is none.
@@ -129,10 +126,14 @@ class Measures:
             asked: The quantity, its bodies, and the frames to which it is relative.
             frames: Where to measure; by default everywhere.
         """
-        every = np.arange(self.observation.frames)
+        every = np.arange(self.observation.frames) if frames is None else frames
+        make, of_path = SERIES.get(asked.quantity), OF_PATHS.get(asked.quantity)
         with np.errstate(invalid="ignore"):
-            found = SERIES.get(asked.quantity)
-            return found and found(self, asked, every if frames is None else frames)
+            if of_path is None:
+                return make and make(self, asked, every)
+            middles = self.body(asked.bodies[0]).middles
+            measured, unit = of_path
+            return Series(every, unit * measured(middles - middles[asked.first])[every])
 
     def body(self, name: str) -> BodyGeometry:
         """The object of a name, or else the sensor."""
@@ -147,33 +148,11 @@ class Measures:
             and all(getattr(fact, name) == value for name, value in about.items())
         )
 
-    def moved(self, name: str) -> tuple[tuple[tuple[int, int], ...], str]:
-        """When a body moves, or, of an end-effector, rests."""
-        if name in self.measurements.bodies.objects:
-            return self.bars(Moving, object=name), "moving"
-        return self.bars(Resting, ee=name), "resting"
 
-
-def _of_start(
-    of: Callable[[Float[np.ndarray, "frames 3"]], Values], unit: float = MILLI
-) -> "Maker":
-    """A quantity of a body's displacement since the start of the interval."""
-
-    def series(known: Measures, asked: Measured, frames: Frames) -> Series:
-        middles = known.body(asked.bodies[0]).middles
-        return Series(frames, unit * of(middles - middles[asked.first])[frames])
-
-    return series
-
-
-def _of_sum(which: int) -> "Maker":
-    """A quantity that adds up from frame to frame: path, rotation or turn."""
-
-    def series(known: Measures, asked: Measured, frames: Frames) -> Series:
-        summed = turned_and_gone(known.body(asked.bodies[0]))[which]
-        return Series(frames, MILLI * (summed - summed[asked.first])[frames])
-
-    return series
+def _sum(known: Measures, asked: Measured, frames: Frames) -> Series:
+    """A quantity that adds up from frame to frame: path or rotation."""
+    summed = turned_and_gone(known.body(asked.bodies[0]))[asked.quantity == "turned"]
+    return Series(frames, MILLI * (summed - summed[asked.first])[frames])
 
 
 def _turn(known: Measures, asked: Measured, frames: Frames) -> Series:
@@ -196,17 +175,19 @@ def _leaning(known: Measures, asked: Measured, frames: Frames) -> Series:
 
 
 def _motion(known: Measures, asked: Measured, frames: Frames) -> Series:
+    """How far a body is from its middle place or mean orientation, and the floor of its motion."""
     (name,) = asked.bodies
-    away = from_middle(known.body(name).middles, slice(asked.first, asked.last + 1))
-    floor = known.measurements.calibration.body(name).motion_floor_m
-    return Series(frames, MILLI * away[frames], (MILLI * floor,), *known.moved(name), most=True)
-
-
-def _turning(known: Measures, asked: Measured, frames: Frames) -> Series:
-    (name,) = asked.bodies
-    angle = from_mean(known.body(name).orientations, slice(asked.first, asked.last + 1))
-    floor = known.measurements.calibration.body(name).motion_floor_rad
-    return Series(frames, MILLI * angle[frames], (MILLI * floor,), *known.moved(name), most=True)
+    interval, body = slice(asked.first, asked.last + 1), known.body(name)
+    floors = known.measurements.calibration.body(name)
+    if asked.quantity == "motion":
+        away, floor = from_middle(body.middles, interval), floors.motion_floor_m
+    else:
+        away, floor = from_mean(body.orientations, interval), floors.motion_floor_rad
+    if name in known.measurements.bodies.objects:
+        bars, held = known.bars(Moving, object=name), "moving"
+    else:
+        bars, held = known.bars(Resting, ee=name), "resting"
+    return Series(frames, MILLI * away[frames], (MILLI * floor,), bars, held, most=True)
 
 
 def _swing(known: Measures, asked: Measured, frames: Frames) -> Series:
@@ -256,23 +237,17 @@ def _push(known: Measures, asked: Measured, frames: Frames) -> Series:
     return Series(frames, values[frames])
 
 
-def _pair(known: Measures, asked: Measured) -> Pair:
+def _placed(known: Measures, asked: Measured, frames: Frames) -> Series:
+    """The share of a body that is inside another one, or how far it is above it."""
     limits = thresholds_of(known.measurements.calibration)
-    return Pair(known.body(asked.bodies[0]), known.body(asked.bodies[1]), limits)
-
-
-def _inside(known: Measures, asked: Measured, frames: Frames) -> Series:
-    pair = _pair(known, asked)
-    bars = known.bars(Lies, body=asked.bodies[0], how="inside", other=asked.bodies[1])
-    limit = MILLI * pair.thresholds.inside_stays_share
-    return Series(frames, MILLI * pair.shares[0][frames], (limit,), bars, "inside")
-
-
-def _above(known: Measures, asked: Measured, frames: Frames) -> Series:
-    pair = _pair(known, asked)
+    pair = Pair(known.body(asked.bodies[0]), known.body(asked.bodies[1]), limits)
+    how = asked.quantity
+    bars = known.bars(Lies, body=asked.bodies[0], how=how, other=asked.bodies[1])
+    if how == "inside":
+        limit = MILLI * limits.inside_stays_share
+        return Series(frames, MILLI * pair.shares[0][frames], (limit,), bars, how)
     rise = MILLI * (pair.body.middles[:, 2] - pair.other.boxes[1][:, 2])
-    bars = known.bars(Lies, body=asked.bodies[0], how="above", other=asked.bodies[1])
-    return Series(frames, rise[frames], (), bars, "above")
+    return Series(frames, rise[frames], (), bars, how)
 
 
 def _bearing(known: Measures, asked: Measured, frames: Frames) -> Series:
@@ -313,23 +288,24 @@ def _parts_apart(
             yield separation(touchable(part), touchable(other), frames)
 
 
-Maker = Callable[[Measures, Measured, Frames], Series | None]
+def _length(displaced: Displacement) -> Values:
+    return np.asarray(np.linalg.norm(displaced, axis=1))
 
 
-def _level(displaced: Float[np.ndarray, "frames 3"]) -> Values:
-    return np.asarray(np.linalg.norm(displaced[:, :2], axis=1))
+OF_PATHS: Mapping[str, tuple[Callable[[Displacement], Values], float]] = {
+    "height": (lambda displaced: displaced[:, 2], MILLI),
+    "depth": (lambda displaced: -displaced[:, 2], MILLI),
+    "vertical": (lambda displaced: np.abs(displaced[:, 2]), MILLI),
+    "far_height": (lambda displaced: np.abs(displaced[:, 2]), 1.0),
+    "aside": (lambda displaced: _length(displaced[:, :2]), MILLI),
+    "far_aside": (lambda displaced: _length(displaced[:, :2]), 1.0),
+    "way": (_length, MILLI),
+}
+"""Quantities of a body's displacement since the start of the interval, and their units a metre."""
 
-
-SERIES: Mapping[str, Maker] = {
-    "height": _of_start(lambda displaced: displaced[:, 2]),
-    "depth": _of_start(lambda displaced: -displaced[:, 2]),
-    "vertical": _of_start(lambda displaced: np.abs(displaced[:, 2])),
-    "far_height": _of_start(lambda displaced: np.abs(displaced[:, 2]), 1.0),
-    "aside": _of_start(_level),
-    "far_aside": _of_start(_level, 1.0),
-    "way": _of_start(lambda displaced: np.asarray(np.linalg.norm(displaced, axis=1))),
-    "path": _of_sum(0),
-    "turned": _of_sum(1),
+SERIES: Mapping[str, Callable[[Measures, Measured, Frames], Series | None]] = {
+    "path": _sum,
+    "turned": _sum,
     "turn": _turn,
     "lean": _lean,
     "leaning": _leaning,
@@ -339,10 +315,10 @@ SERIES: Mapping[str, Maker] = {
     "opening": _opening,
     "distance": _distance,
     "motion": _motion,
-    "turning": _turning,
+    "turning": _motion,
     "swing": _swing,
-    "inside": _inside,
-    "above": _above,
+    "inside": _placed,
+    "above": _placed,
     "bearing": _bearing,
 }
-"""How each quantity is measured over time."""
+"""How each other quantity is measured over time."""

@@ -2,9 +2,9 @@
 
 import ctypes
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
-from functools import cache
 from hashlib import sha256
 from itertools import groupby
 from pathlib import Path
@@ -17,7 +17,7 @@ from capar.model.calibration import Calibration
 from capar.model.capture import Capture
 from capar.model.errors import FileError
 from capar.model.facts import Displaced, Fact, FlickerCorrection, MovedBy
-from capar.model.locations import ConstraintLocation, GuideLocation
+from capar.model.locations import ConstraintLocation
 from capar.model.notices import Notice, notice
 from capar.model.observation import Observation, Segment
 from capar.pipelines.trials import trial_of
@@ -25,7 +25,7 @@ from capar_rules.borders.border_numbers import number_borders
 from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.movers.movers import movers
-from capar_rules.pars.inference import Inference, Key, infer
+from capar_rules.pars.inference import Inference, infer
 from capar_rules.pars.pars import Measured, compose, ipars, naming_rules, upars
 from extractors.bodies.bodies import Bodies, observed_object
 from extractors.calibration import calibrate as calibration_of
@@ -39,13 +39,18 @@ from extractors.thresholds import Thresholds
 from kb.lookup.pars import Stored
 
 
-def flicker_notices(facts: Iterable[Fact], rate_hz: float) -> Iterator[Notice]:
-    """A notice for each stretch that is not taken as it was measured.
+def return_freed_memory() -> None:
+    """Give back what the allocator keeps of freed arrays; without effect where it is not glibc's.
 
-    Args:
-        facts: Measurements and corrections.
-        rate_hz: Frames a second.
+    Arrays of a long capture lie among smaller things that live on, so that glibc keeps their pages
+    when they are freed. What is allocated next, by the solver for instance, then adds to them.
     """
+    with suppress(AttributeError, OSError, TypeError):  # musl, macOS; Windows has no such handle
+        ctypes.CDLL(None).malloc_trim(0)
+
+
+def flicker_notices(facts: Iterable[Fact], rate_hz: float) -> Iterator[Notice]:
+    """A notice for each interval that is not taken as it was measured, at so many frames/s."""
     for fact in facts:
         if isinstance(fact, FlickerCorrection):
             yield notice(
@@ -56,28 +61,6 @@ def flicker_notices(facts: Iterable[Fact], rate_hz: float) -> Iterator[Notice]:
                 length_s=(fact.last - fact.first + 1) / rate_hz,
                 taken=fact.taken,
             )
-
-
-def return_freed_memory() -> None:
-    """Give back what the allocator keeps of freed arrays; without effect where it is not glibc's.
-
-    Arrays of a long capture lie among smaller things that live on, so that glibc keeps their pages
-    when they are freed. What is allocated next, by the solver for instance, then adds to them.
-    """
-    trim = _malloc_trim()
-    if trim is not None:
-        trim(0)
-
-
-@cache
-def _malloc_trim() -> "ctypes._NamedFuncPointer | None":
-    try:
-        return ctypes.CDLL(None).malloc_trim
-    except (AttributeError, OSError, TypeError):  # musl, macOS; Windows has no such handle
-        return None
-
-
-UNKNOWN = "unknown"
 
 
 def unmoved_notices(facts: Iterable[Fact], times: Float[np.ndarray, "frames"]) -> Iterator[Notice]:
@@ -92,20 +75,15 @@ def unmoved_notices(facts: Iterable[Fact], times: Float[np.ndarray, "frames"]) -
     for fact in facts:
         if isinstance(fact, Displaced):
             moved[fact.object] += fact.last - fact.first + 1
-        elif isinstance(fact, MovedBy) and fact.how == UNKNOWN:
+        elif isinstance(fact, MovedBy) and fact.how == "unknown":
             lacking[fact.object].append(fact)
-    for thing, parts in sorted(lacking.items()):
+    for name, parts in sorted(lacking.items()):
         worst = max(parts, key=lambda part: part.last - part.first)
         frames = sum(part.last - part.first + 1 for part in parts)
         yield notice(
-            "no-mover",
-            thing,
-            start_s=float(times[worst.first]),
-            end_s=float(times[worst.last]),
-            share=frames / max(moved[thing], 1),
-            times=len(parts),
-            why=worst.mover,
-        )
+            "no-mover", name, start_s=float(times[worst.first]), end_s=float(times[worst.last]),
+            share=frames / max(moved[name], 1), times=len(parts), why=worst.mover,
+        )  # fmt: skip
 
 
 def observe(
@@ -127,7 +105,8 @@ def observe(
         CaparError: The capture or the rules have a fault.
     """
     trial = trial_of(capture)
-    return observe_measured(trial, _measurements(trial, thresholds), rules=rules, name=name)
+    known = calibration_of(trial, thresholds) if thresholds else None
+    return observe_measured(trial, measure(trial, known), rules=rules, name=name)
 
 
 def calibrate(
@@ -154,21 +133,25 @@ def observe_measured(
 ) -> Observation:
     """The same for a capture whose measurements are at hand."""
     base = profile(rules) if isinstance(rules, str) else rules
-    limits = thresholds_of(measurements.calibration)
-    action = name or capture.name
+    limits, bodies = thresholds_of(measurements.calibration), measurements.bodies
+    action, agent = name or capture.name, capture.agent.name
     facts = steady(measurements.facts) if base.steady else measurements.facts
     # The solver needs no poses; styles and places, which do, come later.
-    measurements.bodies.forget_smooth_poses()
+    bodies.forget_smooth_poses()
     return_freed_memory()
     inference = infer(facts, profile=base)
     return_freed_memory()
     moved = () if base.crossings_only else movers(facts)
     return_freed_memory()
-    measured = dict(_measured(capture, measurements, inference, limits))
+    segments = [segment for link in inference.links for segment in link.segments]
+    paths = {
+        (segment.ee, segment.index): Measured(*moved_path(capture, measurements, segment, limits))
+        for segment in _grouped(sorted(segments, key=followed), bodies, followed)
+    }
     return_freed_memory()
-    frames = len(capture.times) - 1
-    duration_s = float(capture.times[-1])
-    agent = capture.agent.name
+    by_link = _grouped(segments, bodies, lambda segment: segment.ee)
+    places = (_location(capture, measurements, inference, segment) for segment in by_link)
+    frames, duration_s = len(capture.times), float(capture.times[-1])
     return Observation(
         capture=capture.name,
         profile=base.name,
@@ -177,34 +160,61 @@ def observe_measured(
         agent=capture.agent,
         duration_s=duration_s,
         rate_hz=capture.rate_hz,
-        frames=frames + 1,
+        frames=frames,
         objects=tuple(observed_object(each) for each in capture.objects),
         links=inference.links,
         facts=(*facts, *moved),
-        upars=upars(inference, measured, name=action),
-        ipars=ipars(inference, measured, agent=agent, name=action),
-        complex_par=compose(inference, name=action, frames=frames, duration_s=duration_s),
-        locations=tuple(_locations(capture, measurements, inference)),
+        upars=upars(inference, paths, name=action),
+        ipars=ipars(inference, paths, agent=agent, name=action),
+        complex_par=compose(inference, name=action, frames=frames - 1, duration_s=duration_s),
+        locations=tuple(place for place in places if place),
         styles=tuple(
             style(segment, measurements.tracks[segment.ee], capture.times, limits)
-            for segment in _link_by_link(inference, measurements.bodies)
+            for segment in _grouped(segments, bodies, lambda segment: segment.ee)
         ),
         sources=capture.sources,
         notices=(
             *measurements.notices,
             *flicker_notices(facts, capture.rate_hz),
             *unmoved_notices((*facts, *moved), capture.times),
-            *_violations(inference),
+            *(notice("rule-violation", violation=each) for each in inference.violations),
         ),
         joint=inference.joint,
         relations=inference.relations,
         others=capture.others,
         calibration=measurements.calibration,
-        guides=() if base.crossings_only else tuple(_guides(measurements)),
-        forces=force_styles(capture, measurements.bodies, facts, measurements.guides),
-        naming=naming_rules(base, (segment.name for segment in _segments(inference))),
-        tracks=tuple(sampled_tracks(measurements.bodies, capture.times)),
+        guides=()
+        if base.crossings_only
+        else tuple(
+            guide_location(bodies.objects[name], bodies.objects[guide.base], guide)
+            for name, guide in sorted(measurements.guides.items())
+        ),
+        forces=force_styles(capture, bodies, facts, measurements.guides),
+        naming=naming_rules(base, (segment.name for segment in segments)),
+        tracks=tuple(sampled_tracks(bodies, capture.times)),
     )
+
+
+def _grouped(
+    segments: Iterable[Segment], bodies: Bodies, key: Callable[[Segment], object]
+) -> Iterator[Segment]:
+    """The segments; after those of a key the poses that were filtered for them are forgotten."""
+    for _, group in groupby(segments, key):
+        yield from group
+        bodies.forget_smooth_poses()
+
+
+def _location(
+    capture: Capture, measurements: Measurements, inference: Inference, segment: Segment
+) -> ConstraintLocation | None:
+    """The constraint that ends a segment, where it ends in a contact (spec 4)."""
+    first, second = inference.conditions[segment.ee, segment.index].colliding
+    if second < 0 or "1" not in segment.features.rel_end:
+        return None
+    return constraint_location(
+        capture, measurements.bodies, measurements.attention, segment,
+        dominant=segment.objects[first] if first >= 0 else "", goal=segment.objects[second],
+    )  # fmt: skip
 
 
 def facts_program(
@@ -215,69 +225,10 @@ def facts_program(
     Flicker is resolved, and borders are numbered, as the profile has it.
     """
     base = profile(rules) if isinstance(rules, str) else rules
-    measurements = _measurements(capture, thresholds)
+    measurements = measure(capture, calibration_of(capture, thresholds) if thresholds else None)
     facts = steady(measurements.facts) if base.steady else measurements.facts
-    return replace(measurements, facts=facts), number_borders(
-        facts, crossings_only=base.crossings_only
-    )
-
-
-def _measurements(capture: Capture, thresholds: Thresholds | None) -> Measurements:
-    return measure(capture, calibration_of(capture, thresholds) if thresholds else None)
-
-
-def _segments(inference: Inference) -> Iterable[Segment]:
-    return (segment for link in inference.links for segment in link.segments)
-
-
-def _link_by_link(inference: Inference, bodies: Bodies) -> Iterable[Segment]:
-    """All segments; after those of a link the poses that were filtered for them are forgotten."""
-    for link in inference.links:
-        yield from link.segments
-        bodies.forget_smooth_poses()
-
-
-def _body_by_body(inference: Inference, bodies: Bodies) -> Iterable[Segment]:
-    """All segments, by the body that goes the way; its filtered poses are forgotten after them."""
-    for _, segments in groupby(sorted(_segments(inference), key=followed), key=followed):
-        yield from segments
-        bodies.forget_smooth_poses()
-
-
-def _measured(
-    capture: Capture, measurements: Measurements, inference: Inference, thresholds: Thresholds
-) -> Iterable[tuple[Key, Measured]]:
-    for segment in _body_by_body(inference, measurements.bodies):
-        motion, path = moved_path(capture, measurements, segment, thresholds)
-        yield (segment.ee, segment.index), Measured(motion, path)
-
-
-def _locations(
-    capture: Capture, measurements: Measurements, inference: Inference
-) -> Iterable[ConstraintLocation]:
-    """The constraint that ends each segment, where it ends in a contact (spec 4)."""
-    for segment in _link_by_link(inference, measurements.bodies):
-        first, second = inference.conditions[segment.ee, segment.index].colliding
-        if second >= 0 and "1" in segment.features.rel_end:
-            yield constraint_location(
-                capture,
-                measurements.bodies,
-                measurements.attention,
-                segment,
-                dominant=segment.objects[first] if first >= 0 else "",
-                goal=segment.objects[second],
-            )
-
-
-def _guides(measurements: Measurements) -> Iterable[GuideLocation]:
-    """The hinge or the rail of each object that moves on one (spec 10)."""
-    objects = measurements.bodies.objects
-    for name, guide in sorted(measurements.guides.items()):
-        yield guide_location(objects[name], objects[guide.base], guide)
-
-
-def _violations(inference: Inference) -> Iterable[Notice]:
-    return (notice("rule-violation", violation=each) for each in inference.violations)
+    borders = number_borders(facts, crossings_only=base.crossings_only)
+    return replace(measurements, facts=facts), borders
 
 
 def observe_again(
@@ -305,7 +256,18 @@ def observe_again(
             if path.is_file() and sha256(path.read_bytes()).hexdigest() in digests:
                 for trial in _trials(path, known.name):
                     if sorted(each.sha256 for each in trial.sources) == digests:
-                        return _again(trial, known, measured, rules)
+                        found = measure(trial)
+                        # Flicker is resolved if it was in what was measured then.
+                        resolved = next(
+                            (
+                                on
+                                for on in (rules.steady, not rules.steady)
+                                if set(steady(found.facts) if on else found.facts) == set(measured)
+                            ),
+                            rules.steady,
+                        )
+                        again = replace(rules, steady=resolved)
+                        return observe_measured(trial, found, rules=again, name=known.action)
     searched = ", ".join(map(str, places))
     raise FileError(
         files[0][0] if files else known.name,
@@ -313,20 +275,6 @@ def observe_again(
         "have changed; nothing was renamed.",
         "Name the folder that holds them with --captures, or observe and add it again.",
     )
-
-
-def _again(
-    trial: Capture, known: Stored, measured: tuple[Fact, ...], rules: Profile
-) -> Observation:
-    """A capture observed again, its flicker resolved if it was in what was measured then."""
-    found = measure(trial)
-    steadied = rules.steady
-    for other in (rules.steady, not rules.steady):
-        facts_then = steady(found.facts) if other else found.facts
-        if set(facts_then) == set(measured):
-            steadied = other
-            break
-    return observe_measured(trial, found, rules=replace(rules, steady=steadied), name=known.action)
 
 
 def _trials(path: Path, name: str) -> Iterator[Capture]:
