@@ -63,8 +63,8 @@ def describe(
     words = rule_words(rules, actionary)
     text = told(observation, detail=detail.value, timed=timed, words=words)
     notices = reservations_on_told(observation)
-    value = {"capture": observation.capture, "description": text}
-    value["notices"] = [each.document() for each in notices]
+    told_of = {"capture": observation.capture, "description": text}
+    value = {**told_of, "notices": [each.document() for each in notices]}
     lines = (text, *reservation_lines(notices, called=nouns(observation.objects)))
     answer(value, lines, json=json, sort_keys=True)
 

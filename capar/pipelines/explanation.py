@@ -224,7 +224,7 @@ def _panel(every: Sequence[Measured], series: Series, rate_hz: float) -> Panel:
     """The panel of what conditions measure of one quantity of certain bodies."""
     first = every[0]
     scale, unit = QUANTITIES[first.quantity].scale, first.unit
-    marks = {}
+    marks: dict[tuple[float, float, str], None] = {}
     for one in every:
         if one.value is not None:
             # Where the curve has the value, near the frame that counts: rules compare some
