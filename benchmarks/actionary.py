@@ -96,8 +96,6 @@ def measure(name: str, store: Any, ask: Callable[[str], object], rate: float, si
         every += times
         print(f"  {asked:<14}{statistics.median(times):10.2f} ms")
     lookups = (
-        ("location", lambda: store.location("mug", action="Reach", purpose="PickUp", side="right")),
-        ("style", lambda: store.style("agent0", action="Reach", purpose="PickUp")),
         ("recognise", lambda: store.recognise(MADE[0].complex_par)),
         ("one place", lambda: ask(ONE_PLACE)),
     )

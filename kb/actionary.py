@@ -5,12 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from capar.model.errors import UnknownNameError
 from kb.encode.observation import encode, identity, run, run_removal
 from kb.errors import ExistsError, StoreError
-from kb.lookup.agents import aliases, joined
-from kb.lookup.locations import Knowledge
-from kb.lookup.pars import recognise
+from kb.lookup.agents import Agents, aliases, joined
+from kb.lookup.pars import unknown_observation
 from kb.queries.questions import question
 from kb.store import names, sparql, updates
 from kb.store.answers import Answer, Plain
@@ -43,7 +41,7 @@ class Added:
     statements: int
 
 
-class Actionary(Knowledge, AbstractContextManager["Actionary"]):
+class Actionary(Agents, AbstractContextManager["Actionary"]):
     """Observations, the actions, agents and objects that they are of, and the ontology."""
 
     def __init__(self, store: Store, *, read_only: bool = False) -> None:
@@ -55,8 +53,14 @@ class Actionary(Knowledge, AbstractContextManager["Actionary"]):
         """
         self.store = store
         updates.check_current(store)
-        if not read_only:
-            self._prepare()
+        current = f"ASK {{ {updates.ontology_digest().triple} }}"
+        if not read_only and not store.ask(current).boolean:
+            store.change(updates.ontology_replacement())
+            if not store.ask(current).boolean:
+                raise StoreError(
+                    f"{store.place}: its default graph is not the union of the named ones; "
+                    "configure the server so (oxigraph serve --union-default-graph)"
+                )
 
     @classmethod
     def open(
@@ -99,16 +103,6 @@ class Actionary(Knowledge, AbstractContextManager["Actionary"]):
         """See what others have written since it was opened."""
         self.store.refresh()
 
-    def _prepare(self) -> None:
-        current = f"ASK {{ {updates.ontology_digest().triple} }}"
-        if not self.store.ask(current).boolean:
-            self.store.change(updates.ontology_replacement())
-            if not self.store.ask(current).boolean:
-                raise StoreError(
-                    f"{self.store.place}: its default graph is not the union of the named ones; "
-                    "configure the server so (oxigraph serve --union-default-graph)"
-                )
-
     # Observations
 
     def add(
@@ -139,7 +133,7 @@ class Actionary(Knowledge, AbstractContextManager["Actionary"]):
                 f"{self.store.place}; "
                 "give this capture another name, forget that one, or ask to replace it"
             )
-        recognised = recognise(self.store, observation.complex_par, besides=graph) or ""
+        recognised = self.recognise(observation.complex_par, besides=graph) or ""
         called = name or observation.complex_par.name or recognised or observation.capture
         statements = encode(observation, name=called)
         check_statements(observation.capture, statements.things)
@@ -157,9 +151,8 @@ class Actionary(Knowledge, AbstractContextManager["Actionary"]):
         Raises:
             UnknownNameError: There is no observation of that name.
         """
-        known = [each.name for each in self.observations()]
-        if name not in known:
-            raise UnknownNameError("observation", name, known, where=self.store.place)
+        if name not in [each.name for each in self.observations()]:
+            raise unknown_observation(self.store, name)
         graph = names.observation(name)
         self.store.change(f"{run_removal(graph)} ;\n{updates.removal(graph)}")
 

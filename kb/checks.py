@@ -2,8 +2,6 @@
 
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
-from functools import cache
-from typing import Any
 
 from pyoxigraph import Literal, NamedNode, Quad, Triple
 
@@ -45,13 +43,17 @@ def check(store: Store, *, full: bool = False) -> tuple[Problem, ...]:
         DamagedError: A statement cannot be read.
     """
     store.check_readable()
-    shared = by_thing(q for each in ("agents", "objects", "actions") for q in _graph(store, each))
+
+    def graph(*graphs: str) -> Things:
+        return by_thing(quad for each in graphs for quad in store.graph(names.GRAPHS[each]))
+
+    shared = graph("agents", "objects", "actions")
     # What a user declares may say less than what observations mention.
     mentioned = store.ask(f"SELECT DISTINCT ?thing {{ ?seen {CAPAR.mentions} ?thing }}").rows
     seen = {row[0] for row in mentioned}
     common = {thing: said for thing, said in shared.items() if thing in seen}
     lines = [("", line) for line in _faults(common, shared)]
-    lines += [("", line) for line in _faults(by_thing(_graph(store, "corrections")), shared)]
+    lines += [("", line) for line in _faults(graph("corrections"), shared)]
     named = shared.keys() | ontology_kinds().keys()
     listed = [each.name for each in observations(store)]
     for name in listed:
@@ -61,17 +63,13 @@ def check(store: Store, *, full: bool = False) -> tuple[Problem, ...]:
         if full:
             judged = by_shacl([quad.triple for quad in part(store, name)])
             lines += [(name, f"{thing}: {message}") for thing, message in judged]
-    for (graph,) in store.ask("SELECT DISTINCT ?g WHERE { GRAPH ?g { ?s ?p ?o } }").rows:
-        if isinstance(graph, NamedNode) and graph.value.startswith(names.OBSERVATION):
-            name = names.observation_name(graph)
+    for (node,) in store.ask("SELECT DISTINCT ?g WHERE { GRAPH ?g { ?s ?p ?o } }").rows:
+        if isinstance(node, NamedNode) and node.value.startswith(names.OBSERVATION):
+            name = names.observation_name(node)
             if name not in listed:
                 lines.append((name, f"{name}: has statements and is no whole observation"))
     parted = ((name, *line.partition(": ")[::2]) for name, line in lines)
     return tuple(sorted({Problem(*each) for each in parted}))
-
-
-def _graph(store: Store, name: str) -> list[Quad]:
-    return store.graph(names.GRAPHS[name])
 
 
 def _faults(things: Things, shared: Things) -> Iterator[str]:
@@ -86,8 +84,7 @@ def _faults(things: Things, shared: Things) -> Iterator[str]:
     }
     for thing, said in things.items():
         for nlt, owner in _NLTS.items():
-            owners = {each for each in said.get(owner, ()) if isinstance(each, NamedNode)}
-            size = next((sizes[each] for each in owners if each in sizes), "")
+            size = next((sizes[each] for each in said.get(owner, ()) if each in sizes), "")
             for value in said.get(nlt, ()):
                 if size and isinstance(value, Literal) and not _within(value.value, size):
                     yield (
@@ -109,22 +106,17 @@ def _within(nlt: str, size: str) -> bool:
 
 def _dangling(store: Store, quads: list[Quad], known: Collection[object]) -> Iterator[str]:
     """References of an observation to things of which nothing is said anywhere."""
-    own = {each.subject for each in quads}
-    doubtful = [
-        each
+    known = {each.subject for each in quads} | {*known}
+    doubtful = {
+        each.object
         for each in quads
-        if isinstance(each.object, NamedNode)
-        and each.object not in own
-        and each.object not in known
-        and each.object.value.startswith(DATA)
-    ]
-    if not doubtful:
-        return
-    listed = " ".join(sorted({str(each.object) for each in doubtful}))
+        if isinstance(each.object, NamedNode) and each.object.value.startswith(DATA)
+    } - known
+    listed = " ".join(sorted(map(str, doubtful)))
     query = f"SELECT DISTINCT ?thing {{ VALUES ?thing {{ {listed} }} ?thing ?property ?value }}"
-    said = {row[0] for row in store.ask(query).rows}
-    for quad in doubtful:
-        if quad.object not in said:
+    doubtful -= {row[0] for row in store.ask(query).rows} if doubtful else set()
+    for quad in quads:
+        if quad.object in doubtful:
             predicate, value = short(quad.predicate), short(quad.object)
             yield f"{short(quad.subject)}: {predicate} points to {value}, of which nothing is said"
 
@@ -139,21 +131,13 @@ def by_shacl(triples: Iterable[Triple]) -> list[tuple[str, str]]:
     named = {each.object for each in stated} & ontology_kinds().keys()
     stated += [each for each in ontology() if each.subject in named]
     data = Graph().parse(data="".join(f"{each} .\n" for each in stated), format="nt")
-    _, report, _ = validate(data, shacl_graph=_shapes(), inference="none", advanced=False)
+    shapes = Graph()
+    for file in shape_files():
+        shapes.parse(data=file.read_text("utf-8"), format="turtle")
+    _, report, _ = validate(data, shacl_graph=shapes, inference="none", advanced=False)
     assert isinstance(report, Graph)
     found = {
         (str(report.value(each, shacl.focusNode)), str(report.value(each, shacl.resultMessage)))
         for each in report.objects(None, shacl.result)
     }
     return sorted((thing.rsplit("/", 1)[-1], message) for thing, message in found)
-
-
-@cache
-def _shapes() -> Any:
-    """Every shape, as rdflib's graph."""
-    from rdflib import Graph
-
-    graph = Graph()
-    for file in shape_files():
-        graph.parse(data=file.read_text("utf-8"), format="turtle")
-    return graph

@@ -1,9 +1,10 @@
 """Corrections: what persons say was done, beside what the machine says."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from itertools import groupby
+from typing import Any
 
 from pyoxigraph import Literal, NamedNode, Quad
 
@@ -11,7 +12,7 @@ from capar.model.errors import UnknownNameError
 from capar.model.observation import ObservedLink, Segment, SegmentAddress
 from capar.model.par import ACTION_NAME, UNKNOWN
 from kb.errors import CorrectionError
-from kb.lookup.pars import observations
+from kb.lookup.pars import observations, unknown_observation
 from kb.store import names
 from kb.store.sparql import stored
 from kb.store.statements import LABEL, TYPE
@@ -41,10 +42,6 @@ class Span:
 
     by: str = ""
     """The person who says so; empty for the machine."""
-
-    def between(self, start_s: float, end_s: float) -> "Span":
-        """The same from another start or to another end."""
-        return replace(self, start_s=start_s, end_s=end_s)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,8 +78,7 @@ def account(store: Store, capture: str) -> tuple[Span, ...]:
         store.ask(stored("machine_segments", graph=str(names.observation(capture)))).rows
     )
     if not spans:
-        known = [each.name for each in observations(store)]
-        raise UnknownNameError("observation", capture, known, where=store.place)
+        raise unknown_observation(store, capture)
     for claim in claims(store, capture):
         spans = overlay(spans, claim)
     return spans
@@ -107,18 +103,15 @@ def claim_statements(store: Store, capture: str) -> list[Quad]:
 
 def overlay(spans: Iterable[Span], claim: Span) -> tuple[Span, ...]:
     """Spans with a claim in the place of whatever the same end-effector did in its time."""
-    kept = [piece for each in spans for piece in _outside(each, claim)]
-    return tuple(sorted([*kept, claim]))
-
-
-def _outside(span: Span, claim: Span) -> list[Span]:
-    if span.ee != claim.ee:
-        return [span]
-    parts = (
-        span.between(span.start_s, min(span.end_s, claim.start_s)),
-        span.between(max(span.start_s, claim.end_s), span.end_s),
-    )
-    return [each for each in parts if each.end_s - each.start_s > LEAST_S]
+    kept = [claim]
+    for each in spans:
+        if each.ee == claim.ee:
+            before = replace(each, end_s=min(each.end_s, claim.start_s))
+            after = replace(each, start_s=max(each.start_s, claim.end_s))
+            kept += [e for e in (before, after) if e.end_s - e.start_s > LEAST_S]
+        else:
+            kept.append(each)
+    return tuple(sorted(kept))
 
 
 def claimed(spans: Sequence[Span], at: int, change: Correction) -> list[Span]:
@@ -135,23 +128,23 @@ def claimed(spans: Sequence[Span], at: int, change: Correction) -> list[Span]:
     if change.join:
         if after is None:
             raise CorrectionError("it is the last segment of its end-effector; join the one before")
-        return [one.between(one.start_s, after.end_s)]
-    if change.split_s is not None:
-        _inside(change.split_s, one.start_s, one.end_s)
-        return [one.between(one.start_s, change.split_s), one.between(change.split_s, one.end_s)]
+        return [replace(one, end_s=after.end_s)]
+    start_s, end_s = one.start_s, one.end_s
     if change.start_s is not None:
-        _inside(change.start_s, before.start_s if before else -LEAST_S, one.end_s)
-        left = [before.between(before.start_s, change.start_s)] if before else []
-        return [*left, one.between(change.start_s, one.end_s)]
-    assert change.end_s is not None
-    _inside(change.end_s, one.start_s, after.end_s if after else float("inf"))
-    right = [after.between(change.end_s, after.end_s)] if after else []
-    return [one.between(one.start_s, change.end_s), *right]
-
-
-def _inside(time_s: float, start_s: float, end_s: float) -> None:
+        start_s = before.start_s if before else -LEAST_S
+    elif change.end_s is not None:
+        end_s = after.end_s if after else float("inf")
+    (time_s,) = {change.split_s, change.start_s, change.end_s} - {None}
+    assert time_s is not None
     if not start_s + LEAST_S <= time_s <= end_s - LEAST_S:
         raise CorrectionError(f"{time_s} s does not lie between {start_s:.3f} and {end_s:.3f} s")
+    if change.split_s is not None:
+        return [replace(one, end_s=time_s), replace(one, start_s=time_s)]
+    if change.start_s is not None:
+        left = [replace(before, end_s=time_s)] if before else []
+        return [*left, replace(one, start_s=time_s)]
+    right = [replace(after, start_s=time_s)] if after else []
+    return [replace(one, end_s=time_s), *right]
 
 
 def correct(store: Store, address: SegmentAddress, change: Correction, *, by: str) -> None:
@@ -223,67 +216,46 @@ def corrected_links(
     segment that it overlaps most, and its purpose unless that says what was done in it. Claims
     about links that there are not change nothing.
     """
-    return tuple(
-        _corrected(link, own) if (own := [e for e in claims if e.ee == link.ee]) else link
-        for link in links
-    )
+    found = []
+    for link in links:
+        spans = tuple(Span(e.ee, e.start_s, e.end_s, e.name) for e in link.segments)
+        own = [each for each in claims if each.ee == link.ee]
+        for claim in own:
+            spans = overlay(spans, claim)
+        changed = tuple(_segment(link.segments, at, span) for at, span in enumerate(spans))
+        found.append(replace(link, segments=changed) if own else link)
+    return tuple(found)
 
 
-def _corrected(link: ObservedLink, claims: Sequence[Span]) -> ObservedLink:
-    spans = tuple(Span(e.ee, e.start_s, e.end_s, e.name) for e in link.segments)
-    for claim in claims:
-        spans = overlay(spans, claim)
-    segments = tuple(_segment(link.segments, at, span) for at, span in enumerate(spans))
-    return replace(link, segments=segments)
+def _overlap_s(start_s: float, end_s: float, span: Span) -> float:
+    return min(end_s, span.end_s) - max(start_s, span.start_s)
 
 
 def _segment(machine: Sequence[Segment], index: int, span: Span) -> Segment:
-    basis = max(machine, key=lambda segment: _overlap(segment, span))
-    lasts = basis.end_s - basis.start_s
-    frame_s = lasts / (basis.last - basis.first) if basis.last > basis.first else 0.0
-
-    def frame(time_s: float) -> int:
-        return basis.first + (round((time_s - basis.start_s) / frame_s) if frame_s else 0)
-
-    starts, ends = _near(span.start_s, basis.start_s), _near(span.end_s, basis.end_s)
+    basis = max(machine, key=lambda segment: _overlap_s(segment.start_s, segment.end_s, span))
+    frames = max(basis.last - basis.first, 0)
+    rate_hz = frames / (basis.end_s - basis.start_s) if frames else 0.0
+    starts = abs(span.start_s - basis.start_s) <= LEAST_S
+    ends = abs(span.end_s - basis.end_s) <= LEAST_S
     own_name = span.name == basis.name
+    # Where relations are the same at both ends, the purpose says what was done.
+    done = basis.features.rel_start == basis.features.rel_end
     return replace(
         basis,
         index=index,
         name=span.name,
-        purpose=basis.purpose if own_name or not _says_what_was_done(basis) else "",
-        general=basis.general if own_name else _general(machine, span.name),
+        purpose=basis.purpose if own_name or not done else "",
+        general=next((each.general for each in (basis, *machine) if each.name == span.name), ()),
         candidates=basis.candidates if own_name and span.name == UNKNOWN else (),
         level=basis.level if own_name else "",
-        first=basis.first if starts else frame(span.start_s),
-        last=basis.last if ends else frame(span.end_s),
+        first=basis.first + round((span.start_s - basis.start_s) * rate_hz),
+        last=basis.last if ends else basis.first + round((span.end_s - basis.start_s) * rate_hz),
         start_s=span.start_s,
         end_s=span.end_s,
         begins=basis.begins if starts else (),
         ends=basis.ends if ends else (),
     )
 
-
-def _general(machine: Sequence[Segment], name: str) -> tuple[str, ...]:
-    """What an action specialises, by another segment of that name."""
-    return next((segment.general for segment in machine if segment.name == name), ())
-
-
-def _says_what_was_done(segment: Segment) -> bool:
-    """Whether a purpose says what was done in a segment: relations are the same at its end."""
-    return segment.features.rel_start == segment.features.rel_end
-
-
-def _overlap(segment: Segment, span: Span) -> float:
-    return min(segment.end_s, span.end_s) - max(segment.start_s, span.start_s)
-
-
-def _near(one_s: float, other_s: float) -> bool:
-    return abs(one_s - other_s) <= LEAST_S
-
-
-Term = NamedNode | Literal
-Properties = list[tuple[NamedNode, Term]]
 
 _REPLACED = {
     LABEL, CAPAR.start, CAPAR.end, CAPAR.duration, CAPAR.action, CAPAR.index, CAPAR.address,
@@ -304,75 +276,60 @@ def corrected(store: Store) -> EmbeddedStore:
     for capture in sorted(listed & set(corrected_captures(store))):
         graph = names.observation(capture)
         own = [each for each in quads if each.graph_name == graph]
+        segments = {
+            each.subject for each in own if each.predicate == TYPE and each.object == CAPAR.Segment
+        }
         for ee, spans in groupby(account(store, capture), key=lambda each: each.ee):
-            quads = quads.difference(_of_segments(own, ee)).union(
-                _rewritten(own, graph, capture, list(spans))
-            )
+            machine: dict[Any, list[Quad]] = {
+                each.subject: []
+                for each in own
+                if each.subject in segments
+                and (each.predicate, each.object) == (CAPAR.ee, Literal(ee))
+            }
+            for each in own:
+                if each.subject in machine:
+                    machine[each.subject].append(each)
+            linked = {e for e in own if e.predicate == CAPAR.segment and e.object in machine}
+            quads -= linked.union(*machine.values())
+            quads |= set(_rewritten(machine, graph, capture, list(spans)))
     copy.bulk(sorted(quads, key=str))
     return copy
 
 
-def _of_segments(own: Sequence[Quad], ee: str) -> Iterator[Quad]:
-    nodes = set(_segments(own, ee))
-    yield from (each for each in own if each.subject in nodes)
-    yield from (each for each in own if each.predicate == CAPAR.segment and each.object in nodes)
-
-
-def _segments(own: Sequence[Quad], ee: str) -> dict[NamedNode, Properties]:
-    """The machine's segments of an end-effector, each with all that is said of it."""
-    stated = {(each.subject, each.predicate, each.object) for each in own}
-    found: dict[NamedNode, Properties] = {}
-    for statement in own:
-        node, value = statement.subject, statement.object
-        asked = {(node, TYPE, CAPAR.Segment), (node, CAPAR.ee, Literal(ee))}
-        if asked <= stated and isinstance(node, NamedNode) and isinstance(value, Term):
-            found.setdefault(node, []).append((statement.predicate, value))
-    return found
-
-
 def _rewritten(
-    own: Sequence[Quad], graph: NamedNode, capture: str, spans: Sequence[Span]
+    machine: Mapping[Any, list[Quad]], graph: NamedNode, capture: str, spans: Sequence[Span]
 ) -> Iterator[Quad]:
-    machine = _segments(own, spans[0].ee)
+    """Statements of an end-effector's spans, each upon the segment that it overlaps most."""
+
+    def overlap_s(node: Any, span: Span) -> float:
+        at = {each.predicate: each.object for each in machine[node]}
+        return _overlap_s(float(at[CAPAR.start].value), float(at[CAPAR.end].value), span)
+
     nodes = [names.part(graph, "account", each.ee, at) for at, each in enumerate(spans)]
     for at, (node, span) in enumerate(zip(nodes, spans, strict=True)):
-        basis = max(
-            sorted(machine, key=str), key=lambda each: _overlap_corrected_view(machine[each], span)
-        )
-        kept = [each for each in machine[basis] if each[0] not in _REPLACED]
-        if span.name != UNKNOWN:
-            kept = [each for each in kept if each[1] != CAPAR.UnknownSegment]
-        stated = [*kept, *_claimed(span, at, capture)]
-        stated += [(CAPAR.next, each) for each in nodes[at + 1 : at + 2]]
+        known = span.name != UNKNOWN
+        action = names.shared("action", span.name)
+        stated: list[tuple[NamedNode, Any]] = [
+            (LABEL, Literal(f"{span.ee} {at}: {span.name}")),
+            (CAPAR.start, Literal(span.start_s)),
+            (CAPAR.end, Literal(span.end_s)),
+            (CAPAR.duration, Literal(span.end_s - span.start_s)),
+            (CAPAR.index, Literal(at)),
+            (CAPAR.address, Literal(str(SegmentAddress(span.ee, at, capture)))),
+            *((CAPAR.next, each) for each in nodes[at + 1 : at + 2]),
+            *([(CAPAR.action, action)] if known else []),
+            *([(BY, names.shared("person", span.by))] if span.by else []),
+        ]
+        basis = max(sorted(machine, key=str), key=lambda each: overlap_s(each, span))
+        stated += [
+            (each.predicate, each.object)
+            for each in machine[basis]
+            if each.predicate not in _REPLACED
+            and not (known and each.object == CAPAR.UnknownSegment)
+        ]
         yield Quad(graph, CAPAR.segment, node, graph)
         yield from (Quad(node, predicate, value, graph) for predicate, value in stated)
-        yield from _action(span.name)
-
-
-def _claimed(span: Span, at: int, capture: str) -> Properties:
-    stated: Properties = [
-        (LABEL, Literal(f"{span.ee} {at}: {span.name}")),
-        (CAPAR.start, Literal(span.start_s)),
-        (CAPAR.end, Literal(span.end_s)),
-        (CAPAR.duration, Literal(span.end_s - span.start_s)),
-        (CAPAR.index, Literal(at)),
-        (CAPAR.address, Literal(str(SegmentAddress(span.ee, at, capture)))),
-    ]
-    if span.name != UNKNOWN:
-        stated.append((CAPAR.action, names.shared("action", span.name)))
-    return stated + ([(BY, names.shared("person", span.by))] if span.by else [])
-
-
-def _action(name: str) -> Iterator[Quad]:
-    """That there is such an action; what is more general than it, the store says if it knows."""
-    if name != UNKNOWN:
-        node, graph = names.shared("action", name), names.GRAPHS["actions"]
-        yield Quad(node, TYPE, CAPAR.Action, graph)
-        yield Quad(node, LABEL, Literal(name), graph)
-        yield Quad(node, CAPAR.name, Literal(name), graph)
-        yield Quad(node, CAPAR.kindOf, node, graph)
-
-
-def _overlap_corrected_view(properties: Properties, span: Span) -> float:
-    times = {p: float(o.value) for p, o in properties if p in (CAPAR.start, CAPAR.end)}
-    return min(times[CAPAR.end], span.end_s) - max(times[CAPAR.start], span.start_s)
+        if known:  # what is more general than it, the store says if it knows
+            label = Literal(span.name)
+            own = {TYPE: CAPAR.Action, LABEL: label, CAPAR.name: label, CAPAR.kindOf: action}
+            yield from (Quad(action, p, o, names.GRAPHS["actions"]) for p, o in own.items())

@@ -24,7 +24,7 @@ from capar.model.errors import FileError, UnknownNameError
 from kb.corrections import claim_statements
 from kb.errors import ShapeError, StoreError
 from kb.lookup.agents import aliases, joined
-from kb.lookup.pars import observations
+from kb.lookup.pars import observations, unknown_observation
 from kb.store import names, sparql, updates
 from kb.store.answers import turtle
 from kb.store.statements import insertion
@@ -36,25 +36,24 @@ from ontology import files as ontology_files
 
 def with_context(expanded: bytes) -> bytes:
     """Expanded JSON-LD with our prefixes as its context; it states the same."""
-    document = {"@context": dict(PREFIXES), "@graph": _compact(json.loads(expanded))}
+
+    def short(iri: str) -> str:
+        for prefix, base in PREFIXES.items():
+            name = iri.removeprefix(base)
+            if iri.startswith(base) and not name.startswith("//"):
+                return f"{prefix}:{name}"
+        return iri
+
+    def compact(value: Any, under: str = "") -> Any:
+        """A value with the IRIs short that name its keys, classes, datatypes and things."""
+        if isinstance(value, dict):
+            return {short(key): compact(each, key) for key, each in value.items()}
+        if isinstance(value, list):
+            return [compact(each, under) for each in value]
+        return short(value) if under in {"@id", "@type"} else value
+
+    document = {"@context": dict(PREFIXES), "@graph": compact(json.loads(expanded))}
     return (json.dumps(document, indent=1, ensure_ascii=False) + "\n").encode()
-
-
-def _compact(value: Any, under: str = "") -> Any:
-    """A value with the IRIs short that name its keys, classes, datatypes and things."""
-    if isinstance(value, dict):
-        return {_short(key): _compact(each, key) for key, each in value.items()}
-    if isinstance(value, list):
-        return [_compact(each, under) for each in value]
-    return _short(value) if under in {"@id", "@type"} else value
-
-
-def _short(iri: str) -> str:
-    for prefix, base in PREFIXES.items():
-        name = iri.removeprefix(base)
-        if iri.startswith(base) and not name.startswith("//"):
-            return f"{prefix}:{name}"
-    return iri
 
 
 FORMATS = {
@@ -96,9 +95,14 @@ def format_of(path: Path | str, given: str | None = None) -> str:
         raise FileError(
             path, "its name tells no format;", f"add --format: {', '.join(some)} or {last}."
         )
+    _form(name)
+    return name
+
+
+def _form(name: str) -> RdfFormat:
     if name not in FORMATS:
         raise UnknownNameError("format", name, FORMATS)
-    return name
+    return FORMATS[name]
 
 
 def export(
@@ -116,20 +120,16 @@ def export(
     Raises:
         UnknownNameError: There is no such format or observation.
     """
-    if format_name not in FORMATS:
-        raise UnknownNameError("format", format_name, FORMATS)
+    form = _form(format_name)
     if observation is None:
         left_out = None if runs else names.GRAPHS["runs"]
         quads = sorted({e for e in store.quads() if e.graph_name != left_out}, key=str)
     else:
-        quads = sorted({*part(store, observation), updates.statement()}, key=str)
-    form = FORMATS[format_name]
-    if form == RdfFormat.TURTLE:
-        return turtle(dict.fromkeys(quad.triple for quad in quads), form=form).encode()
-    if form == RdfFormat.TRIG:
-        return turtle(quads, form=form).encode()
+        quads = sorted({*part(store, observation), updates.VERSION}, key=str)
+    triples = dict.fromkeys(quad.triple for quad in quads)
+    if form in {RdfFormat.TURTLE, RdfFormat.TRIG}:
+        return turtle(quads if form == RdfFormat.TRIG else triples, form=form).encode()
     if form == RdfFormat.RDF_XML:
-        triples = dict.fromkeys(quad.triple for quad in quads)
         return serialize(triples, format=form, prefixes=dict(PREFIXES)) or b""
     data = serialize(quads, format=form) or b""
     return with_context(data) if form == RdfFormat.JSON_LD else data
@@ -153,8 +153,7 @@ def part(store: Store, observation: str) -> list[Quad]:
     graph = names.observation(observation)
     own = store.graph(graph)
     if not own:
-        known = [each.name for each in observations(store)]
-        raise UnknownNameError("observation", observation, known, where=store.place)
+        raise unknown_observation(store, observation)
     shared: list[Quad] = []
     for name in ("agents", "objects", "actions"):
         where = names.GRAPHS[name]
@@ -178,13 +177,23 @@ def read(data: bytes, format_name: str, *, path: Path | str = "-") -> list[Quad]
         raise FileError(path, f"is no {format_name}: {error}") from None
     if not parsed:
         raise FileError(path, f"holds no statements of {format_name}.", "Export it again.")
-    return [_placed(each) for each in _named(parsed)]
+    if any(isinstance(t, BlankNode) for each in parsed for t in (each.subject, each.object)):
+        dataset = Dataset(parsed)
+        dataset.canonicalize(CanonicalizationAlgorithm.RDFC_1_0)
+        parsed = [
+            Quad(_named(q.subject), q.predicate, _named(q.object), q.graph_name) for q in dataset
+        ]
+    return [
+        Quad(each.subject, each.predicate, each.object, home(each.triple))
+        if isinstance(each.graph_name, DefaultGraph) and isinstance(each.subject, NamedNode)
+        else each
+        for each in parsed
+    ]
 
 
-def _placed(quad: Quad) -> Quad:
-    if not isinstance(quad.graph_name, DefaultGraph) or not isinstance(quad.subject, NamedNode):
-        return quad
-    return Quad(quad.subject, quad.predicate, quad.object, home(quad.triple))
+def _named(term: Any) -> Any:
+    """A term, an unnamed thing by an IRI that follows from what is said of it."""
+    return NamedNode(f"{DATA}genid/{term.value}") if isinstance(term, BlankNode) else term
 
 
 def home(triple: Triple) -> NamedNode:
@@ -202,26 +211,6 @@ def _ontology() -> frozenset[Triple]:
     return frozenset(ontology_files.ontology())
 
 
-def _named(quads: list[Quad]) -> Iterable[Quad]:
-    """The same with IRIs for unnamed things, which follow from what is said of them."""
-    if not any(isinstance(t, BlankNode) for each in quads for t in (each.subject, each.object)):
-        return quads
-    dataset = Dataset(quads)
-    dataset.canonicalize(CanonicalizationAlgorithm.RDFC_1_0)
-    return [Quad(_name(q.subject), q.predicate, _name(q.object), q.graph_name) for q in dataset]
-
-
-def _name(term: object) -> NamedNode:
-    if isinstance(term, BlankNode):
-        return NamedNode(f"{DATA}genid/{term.value}")
-    return term  # type: ignore[return-value]
-
-
-def _classes(store: Store, thing: NamedNode) -> list[object]:
-    """What a store says that a thing is."""
-    return [row[0] for row in store.ask(f"SELECT ?kind WHERE {{ {thing} a ?kind }}").rows]
-
-
 def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -> tuple[int, int]:
     """Add statements, all or none; an observation among them replaces the one of its name.
 
@@ -235,10 +224,13 @@ def bring_in(store: Store, quads: Iterable[Quad], *, source: str = "the file") -
         ShapeError: They break the model.
     """
     stated = list(quads)
-    updates.check_version(source, updates.version_of(stated))
+    updates.check_version(source, stated)
     taken = [each for each in stated if each.graph_name != names.GRAPHS["ontology"]]
-    problems = faults(by_thing(taken), elsewhere=lambda thing: _classes(store, thing))
-    if problems:
+
+    def classes(thing: NamedNode) -> list[object]:
+        return [row[0] for row in store.ask(f"SELECT ?kind {{ {thing} a ?kind }}").rows]
+
+    if problems := faults(by_thing(taken), elsewhere=classes):
         raise ShapeError(source, problems)
     seen = sorted(
         {
@@ -309,9 +301,8 @@ def episode(store: Store, observation: str) -> tuple[Triple, ...]:
     Raises:
         UnknownNameError: There is no such observation.
     """
-    known = [observation.name for observation in observations(store)]
-    if observation not in known:
-        raise UnknownNameError("observation", observation, known, where=store.place)
+    if observation not in [each.name for each in observations(store)]:
+        raise unknown_observation(store, observation)
     template = (files("kb") / "soma_episode.rq").read_text(encoding="utf-8")
     query = sparql.fill(template, graph=str(names.observation(observation)))
     return tuple(sorted(store.ask(sparql.complete(query)).triples or (), key=str))
@@ -324,14 +315,10 @@ def export_episode(store: Store, format_name: str, observation: str) -> bytes:
         UnknownNameError: There is no such format or observation.
         StoreError: It shows nothing that was done.
     """
-    if format_name not in FORMATS:
-        raise UnknownNameError("format", format_name, FORMATS)
+    form = _form(format_name)
     stated = episode(store, observation)
     if not stated:
         raise StoreError(f"{observation}: nothing was done in it")
-    form = FORMATS[format_name]
-    if form == RdfFormat.JSON_LD:
-        return with_context(serialize(stated, format=form) or b"")
-    if form == RdfFormat.N_QUADS:
-        return serialize(stated, format=form) or b""
-    return serialize(stated, format=form, prefixes=VOCABULARIES) or b""
+    plain = form in {RdfFormat.JSON_LD, RdfFormat.N_QUADS}
+    data = serialize(stated, format=form, prefixes=None if plain else VOCABULARIES) or b""
+    return with_context(data) if form == RdfFormat.JSON_LD else data

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
         ObservedObject,
         Segment,
     )
-    from capar.model.par import Nlt
 
 THESIS = "thesis"
 """The profile in which damping is the thesis's."""
@@ -430,9 +429,9 @@ class _Encoder:
                     CAPAR.goalKind: self.kind_named(value.goal),
                     CAPAR.seen: self.objects.get(value.seen),
                     CAPAR.seenKind: self.kind_named(value.seen),
-                    CAPAR.eeNlt: _nlt(value.ee_nlt),
-                    CAPAR.goalNlt: _nlt(value.goal_nlt),
-                    CAPAR.vNlt: _nlt(value.v_nlt),
+                    CAPAR.eeNlt: statements.nlt(value.ee_nlt),
+                    CAPAR.goalNlt: statements.nlt(value.goal_nlt),
+                    CAPAR.vNlt: statements.nlt(value.v_nlt),
                     GENERATED: self.about,
                 },
             )
@@ -476,16 +475,12 @@ class _Encoder:
                     CAPAR.actionName: value.action,
                     **same(value, "purpose ee"),
                     CAPAR.velStyle: statements.vector(value.velocity),
-                    CAPAR.pathStyle: statements.path(value.path) if value.path else None,
+                    CAPAR.pathStyle: statements.path(value.path),
                     GENERATED: self.about,
                 },
             )
             for index, value in enumerate(self.seen.styles)
         ]
-
-
-def _nlt(value: "Nlt | None") -> Literal | None:
-    return statements.nlt(value) if value else None
 
 
 def _interval(seen: "Segment | JointAction") -> PropertyValues:

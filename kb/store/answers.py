@@ -51,11 +51,7 @@ class Answer:
 
     def texts(self) -> list[list[str]]:
         """Each row as the texts of its literals, empty for what is none."""
-        return [list(map(_text, row)) for row in self.rows]
-
-
-def _text(term: Found) -> str:
-    return term.value if isinstance(term, Literal) else ""
+        return [[t.value if isinstance(t, Literal) else "" for t in row] for row in self.rows]
 
 
 def plain(term: Found) -> Plain:
@@ -102,20 +98,15 @@ def encode(result: QuerySolutions | QueryBoolean | QueryTriples) -> tuple[str, b
 def decode(media_type: str, data: bytes) -> Answer:
     """The answer that such bytes state."""
     if "json" in media_type:
-        result = parse_query_results(data, format=QueryResultsFormat.JSON)
-        return collect(result)
-    return Answer(
-        triples=tuple(
-            dict.fromkeys(each.triple for each in parse(data, format=RdfFormat.N_TRIPLES))
-        )
-    )
+        return collect(parse_query_results(data, format=QueryResultsFormat.JSON))
+    parsed = (each.triple for each in parse(data, format=RdfFormat.N_TRIPLES))
+    return Answer(triples=tuple(dict.fromkeys(parsed)))
 
 
 def turtle(statements: Iterable[Triple] | Iterable[Quad], *, form: RdfFormat) -> str:
     """Statements as Turtle or TriG with our prefixes, the same bytes each time."""
     data = serialize(statements, format=form, prefixes=dict(PREFIXES)) or b""
     lines = data.decode().splitlines(keepends=True)
-    count = next(
-        (at for at, each in enumerate(lines) if not each.startswith("@prefix")), len(lines)
+    return "".join(
+        sorted(lines, key=lambda each: (0, each) if each.startswith("@prefix") else (1, ""))
     )
-    return "".join([*sorted(lines[:count]), *lines[count:]])

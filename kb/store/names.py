@@ -12,46 +12,24 @@ from ontology import files as ontology_files
 OBSERVATION = DATA + "observation/"
 
 GRAPHS = {
-    "ontology": NamedNode(DATA + "graph/ontology"),
-    "agents": NamedNode(DATA + "graph/agents"),
-    "objects": NamedNode(DATA + "graph/objects"),
-    "actions": NamedNode(DATA + "graph/actions"),
-    "wordnet": NamedNode(DATA + "graph/lexicon/wordnet"),
-    "levin": NamedNode(DATA + "graph/lexicon/levin"),
-    "verbnet": NamedNode(DATA + "graph/lexicon/verbnet"),
-    "links": NamedNode(DATA + "graph/lexicon/links"),
-    "imported": NamedNode(DATA + "graph/imported"),
-    "runs": NamedNode(DATA + "graph/runs"),
-    "corrections": NamedNode(DATA + "graph/corrections"),
+    **{e: NamedNode(f"{DATA}graph/{e}") for e in ("ontology", "agents", "objects", "actions")},
+    **{e: NamedNode(f"{DATA}graph/lexicon/{e}") for e in ("wordnet", "levin", "verbnet", "links")},
+    **{e: NamedNode(f"{DATA}graph/{e}") for e in ("imported", "runs", "corrections")},
 }
 """The named graphs that are no observation's, by what they hold."""
 
-_GRAPHS_BY_IRI = frozenset(each.value for each in GRAPHS.values())
-
-_OF_FOLDER = {
-    "agent": "agents",
-    "kind": "objects",
-    "action": "actions",
-    "upar": "actions",
-    "condition": "actions",
-    "features": "actions",
-    "row": "actions",
-    "complex": "actions",
-    "rules": "actions",
-    "rule": "actions",
-    "threshold": "actions",
-    "run": "runs",
-    "correction": "corrections",
-    "person": "corrections",
-    "graph": "ontology",
-    "synset": "wordnet",
-    "sense": "wordnet",
-    "verb": "wordnet",
-    "levin": "levin",
+_FOLDERS = {
+    "agents": "agent",
+    "objects": "kind",
+    "actions": "action upar condition features complex rules rule threshold",
+    "runs": "run",
+    "corrections": "correction person",
+    "ontology": "graph",
+    "wordnet": "synset sense verb",
+    "levin": "levin claim remark",
     "verbnet": "verbnet",
-    "claim": "levin",
-    "remark": "levin",
 }
+_GRAPH_OF = {folder: GRAPHS[name] for name, own in _FOLDERS.items() for folder in own.split()}
 
 
 @lru_cache(maxsize=4096)
@@ -99,13 +77,13 @@ def graph_of(subject: NamedNode) -> NamedNode:
     iri = subject.value
     if iri.startswith(OBSERVATION):
         return NamedNode(iri.partition("#")[0])
-    if iri in _GRAPHS_BY_IRI:
+    if subject in GRAPHS.values():
         return subject
     if iri.startswith(DATA):
         folder, _, name = iri.removeprefix(DATA).partition("/")
         if folder == "kind" and unquote(name) in ontology_files.kinds():
             return GRAPHS["ontology"]
-        return GRAPHS[_OF_FOLDER.get(folder, "imported")]
+        return _GRAPH_OF.get(folder, GRAPHS["imported"])
     if iri.startswith(BASE) or iri == BASE.removesuffix("#"):
         return GRAPHS["ontology"]
     return GRAPHS["imported"]

@@ -29,25 +29,27 @@ _ESCAPE = re.compile(r"\\u([0-9A-Fa-f]{4})|\\U([0-9A-Fa-f]{8})")
 _GAP = re.compile(r"@(\w+)@")
 _UPDATES = {"insert", "delete", "load", "clear", "drop", "create", "add", "move", "copy", "with"}
 _FORMS = {"select", "construct", "ask", "describe"}
-_FIRST = _FORMS | _UPDATES | {"prefix", "base"}
 
-ELEMENT = (
+_ELEMENT = (
     '<http://www.w3.org/2001/XMLSchema#double>(REPLACE(CONCAT(STR({0}), " x"), '
     'CONCAT("^(?:[^ ]+ ){{", STR({1}), "}}([^ ]+) .*$"), "$1"))'
 )
-ELEMENT_KNOWN = (
+_ELEMENT_AT = (
     '<http://www.w3.org/2001/XMLSchema#double>(REPLACE(CONCAT(STR({0}), " x"), '
     '"^(?:[^ ]+ ){{{1}}}([^ ]+) .*$", "$1"))'
 )
 """The same for an index that is written out: a pattern that is made once."""
 
-ELEMENTS = '(STRLEN(REPLACE(STR({0}), "[^ ]", "")) + 1)'
-FUNCTIONS = {"element": (ELEMENT, 2), "elements": (ELEMENTS, 1)}
-"""Our functions as expressions of plain SPARQL, which every server knows, with their arity."""
-
 ARITIES = {"position": 3, "speed": 3, "distance": 4, "highestSpeed": 4, "pathLength": 4}
 """How many arguments the functions of ``track_functions`` take: observation and body first, times
 in seconds last. They stand here, as that module takes most of a second to import."""
+
+FUNCTIONS = {
+    "element": (_ELEMENT, 2),
+    "elements": ('(STRLEN(REPLACE(STR({0}), "[^ ]", "")) + 1)', 1),
+    **{name: (f"<{BASE}{name}>({', '.join(['{}'] * n)})", n) for name, n in ARITIES.items()},
+}
+"""Our functions, as expressions of plain SPARQL or of the engine's calls, with their arity."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,13 +71,14 @@ def is_meant(text: str) -> bool:
     pieces = list(dropwhile(lambda each: each.kind == "space", tokens(text)))
     if len(pieces) < 2:
         return not pieces
-    first, after = pieces[:2]
-    return first.text.lower() in _FIRST and after.kind in {"space", "iri", "variable"}
+    first, after = pieces[0].text.lower(), pieces[1].kind
+    known = {*_FORMS, *_UPDATES, "prefix", "base"}
+    return first in known and after in {"space", "iri", "variable"}
 
 
 def unknown_terms(query: str) -> list[str]:
     """A sentence for each word of a query that is written like one of the ontology and is none."""
-    known = {*terms(), *FUNCTIONS, *ARITIES}
+    known = {*terms(), *FUNCTIONS}
     words = (
         piece.text.removeprefix("capar:")
         if piece.kind == "name"
@@ -83,13 +86,13 @@ def unknown_terms(query: str) -> list[str]:
         for piece in tokens(query)
         if piece.text.startswith(("capar:", f"<{BASE}"))
     )
-    return [_unknown(name, known) for name in dict.fromkeys(words) if name and name not in known]
-
-
-def _unknown(name: str, known: set[str]) -> str:
-    near = get_close_matches(name, sorted(known), n=3)
-    hint = f" Did you mean {' or '.join(f'capar:{word}' for word in near)}?" if near else ""
-    return f"the ontology has no capar:{name}, so nothing is found by it.{hint}"
+    found = []
+    for name in dict.fromkeys(words):
+        if name and name not in known:
+            near = [f"capar:{word}" for word in get_close_matches(name, sorted(known), n=3)]
+            hint = f" Did you mean {' or '.join(near)}?" if near else ""
+            found.append(f"the ontology has no capar:{name}, so nothing is found by it.{hint}")
+    return found
 
 
 def names_graphs(query: str) -> bool:
@@ -124,7 +127,15 @@ def complete(query: str) -> str:
         QueryError: A function with another number of arguments than it takes.
     """
     pieces = list(tokens(query))
-    return _prologue(pieces) + _expand(pieces)
+    meaningful = [each for each in pieces if each.kind != "space"]
+    declared = {
+        after.text.partition(":")[0]
+        for before, after in pairwise(meaningful)
+        if before.kind == "word" and before.text.lower() == "prefix"
+    }
+    used = {each.text.partition(":")[0] for each in meaningful if each.kind == "name"}
+    missing = sorted((used & PREFIXES.keys()) - declared)
+    return "".join(f"PREFIX {each}: <{PREFIXES[each]}> " for each in missing) + _expand(pieces)
 
 
 def _refuse(query: str) -> None:
@@ -141,19 +152,6 @@ def _refuse(query: str) -> None:
             )
 
 
-def _prologue(pieces: list[Token]) -> str:
-    """Declarations of the known prefixes that a query uses and does not declare itself."""
-    meaningful = [each for each in pieces if each.kind != "space"]
-    declared = {
-        after.text.partition(":")[0]
-        for before, after in pairwise(meaningful)
-        if before.kind == "word" and before.text.lower() == "prefix"
-    }
-    used = {each.text.partition(":")[0] for each in meaningful if each.kind == "name"}
-    missing = sorted((used & PREFIXES.keys()) - declared)
-    return "".join(f"PREFIX {each}: <{PREFIXES[each]}> " for each in missing)
-
-
 def opens_tracks(query: str) -> bool:
     """Whether a query calls a function that opens sampled tracks, which no server knows."""
     if not any(each in query for each in ARITIES):
@@ -165,10 +163,8 @@ def opens_tracks(query: str) -> bool:
 
 
 def _function(piece: Token) -> str | None:
-    for name in (*FUNCTIONS, *ARITIES):
-        if piece.text in {f"capar:{name}", f"<{BASE}{name}>"}:
-            return name
-    return None
+    names = (each for each in FUNCTIONS if piece.text in {f"capar:{each}", f"<{BASE}{each}>"})
+    return next(names, None)
 
 
 def _expand(pieces: list[Token]) -> str:
@@ -176,15 +172,17 @@ def _expand(pieces: list[Token]) -> str:
     at = 0
     while at < len(pieces):
         name = _function(pieces[at])
-        opening = _skip_space(pieces, at + 1)
+        opening = at + 1
+        while opening < len(pieces) and pieces[opening].kind == "space":
+            opening += 1
         if name and opening < len(pieces) and pieces[opening].text == "(":
             arguments, at = _arguments(pieces, opening)
-            template, arity = FUNCTIONS.get(name) or _called(name)
+            template, arity = FUNCTIONS[name]
             if len(arguments) != arity:
                 raise QueryError(f"capar:{name} takes {arity} arguments, not {len(arguments)}")
             words = [_expand(each).strip() for each in arguments]
             if name == "element" and words[1].isdecimal():
-                template = ELEMENT_KNOWN
+                template = _ELEMENT_AT
             out.append(template.format(*words))
         else:
             out.append(_whole(pieces[at]))
@@ -199,18 +197,6 @@ def _whole(piece: Token) -> str:
     if piece.kind == "iri" and piece.text.startswith("<data:"):
         return f"<{DATA}{piece.text.removeprefix('<data:')}"
     return piece.text
-
-
-def _called(name: str) -> tuple[str, int]:
-    """A function that the engine calls, as an expression, and its arity."""
-    gaps = ", ".join("{}" for _ in range(ARITIES[name]))
-    return f"<{BASE}{name}>({gaps})", ARITIES[name]
-
-
-def _skip_space(pieces: list[Token], at: int) -> int:
-    while at < len(pieces) and pieces[at].kind == "space":
-        at += 1
-    return at
 
 
 def _arguments(pieces: list[Token], opening: int) -> tuple[list[list[Token]], int]:
@@ -237,13 +223,12 @@ def stored(name: str, /, **parts: str) -> str:
 def _stored(name: str) -> str:
     """The text of a file with its IRIs in full: updates are joined, where prefixes may not be."""
     text = (files("kb") / "store" / "queries" / f"{name}.rq").read_text("utf-8")
-    return "".join(_in_full(piece) for piece in tokens(text))
-
-
-def _in_full(piece: Token) -> str:
-    prefix, _, local = piece.text.partition(":")
-    known = piece.kind == "name" and prefix in PREFIXES
-    return f"<{PREFIXES[prefix]}{local}>" if known else _whole(piece)
+    whole = ""
+    for piece in tokens(text):
+        prefix, _, local = piece.text.partition(":")
+        known = piece.kind == "name" and prefix in PREFIXES
+        whole += f"<{PREFIXES[prefix]}{local}>" if known else _whole(piece)
+    return whole
 
 
 def fill(template: str, **parts: str) -> str:

@@ -100,32 +100,33 @@ class LiteralError(CaparError):
     """A compact literal that is not what its datatype promises."""
 
 
+def _compact(values: Iterable[float], datatype: NamedNode) -> Literal:
+    """Numbers as a literal that keeps each of them exactly."""
+    floats = [float(each) for each in values]
+    if not all(map(math.isfinite, floats)):
+        kind = datatype.value.partition("#")[2]
+        raise LiteralError(f"{kind} {floats} has a number that is not finite")
+    return Literal(" ".join(map(repr, floats)), datatype=datatype)
+
+
 def vector(values: Iterable[float]) -> Literal:
-    """Numbers as a literal that keeps each of them exactly.
+    """Numbers as a literal.
 
     Raises:
-        LiteralError: A number that is not finite.
+        LiteralError: A number that is not finite; so of an NLT and of a path.
     """
-    return Literal(_text(values, "vector"), datatype=CAPAR.vector)
+    return _compact(values, CAPAR.vector)
 
 
-def nlt(value: Nlt) -> Literal:
-    """A normalised local transform as a literal.
-
-    Raises:
-        LiteralError: A number that is not finite.
-    """
-    return Literal(_text((*value.position, *value.orientation), "NLT"), datatype=CAPAR.nlt)
+def nlt(value: Nlt | None) -> Literal | None:
+    """A normalised local transform as a literal; nothing of none."""
+    return _compact((*value.position, *value.orientation), CAPAR.nlt) if value else None
 
 
-def path(points: Iterable[PathPoint]) -> Literal:
-    """Significant points as a literal: time and place of each.
-
-    Raises:
-        LiteralError: A number that is not finite.
-    """
+def path(points: Iterable[PathPoint]) -> Literal | None:
+    """Significant points as a literal, time and place of each; nothing of none."""
     numbers = [each for point in points for each in (point.time, *point.position)]
-    return Literal(_text(numbers, "path"), datatype=CAPAR.path)
+    return _compact(numbers, CAPAR.path) if numbers else None
 
 
 def track(value: SampledTrack) -> Literal:
@@ -173,26 +174,6 @@ def nlt_of(text: str) -> Nlt:
     return Nlt((values[0], values[1], values[2]), (values[3], values[4], values[5], values[6]))
 
 
-def path_of(text: str) -> tuple[PathPoint, ...]:
-    """The significant points that a literal states.
-
-    Raises:
-        LiteralError: Its numbers are no fours.
-    """
-    values = numbers(text)
-    if len(values) % 4:
-        raise LiteralError(f"{text!r} has {len(values)} numbers; a path has four for each point")
-    fours = [values[at : at + 4] for at in range(0, len(values), 4)]
-    return tuple(PathPoint(time, (x, y, z)) for time, x, y, z in fours)
-
-
-def _text(values: Iterable[float], what: str) -> str:
-    floats = [float(each) for each in values]
-    if not all(map(math.isfinite, floats)):
-        raise LiteralError(f"{what} {floats} has a number that is not finite")
-    return " ".join(map(repr, floats))
-
-
 class StatementIndex:
     """Statements by subject and property."""
 
@@ -202,10 +183,6 @@ class StatementIndex:
             if isinstance(statement.object, NamedNode | Literal):
                 said = self._said.setdefault(statement.subject, {})
                 said.setdefault(statement.predicate, []).append(statement.object)
-
-    def __contains__(self, node: NamedNode) -> bool:
-        """Whether anything is said of a thing."""
-        return node in self._said
 
     def things(self, kind: NamedNode) -> list[NamedNode]:
         """Everything of a class, by IRI."""

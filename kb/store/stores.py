@@ -35,7 +35,6 @@ from ontology import DATA
 _T = TypeVar("_T")
 
 VARIABLE = "CAPAR_ACTIONARY"
-DEFAULT = "actionary"
 
 DATA_FOLDER = "store"
 """Where in the Actionary's folder the database stands."""
@@ -61,7 +60,7 @@ PATIENCE_S = 60.0
 
 def place(given: str | None = None) -> str:
     """The Actionary that is meant: what is given, else the environment's, else ./actionary."""
-    return given or os.environ.get(VARIABLE) or DEFAULT
+    return given or os.environ.get(VARIABLE) or "actionary"
 
 
 def is_address(where: str) -> bool:
@@ -172,11 +171,9 @@ class EmbeddedStore:
         try:
             return reading(self._store)
         except (OSError, RuntimeError):
-
-            def both(store: Oxigraph) -> tuple[_T, Oxigraph]:
-                return reading(store), store
-
-            found, self._store = _reading(self._folder / DATA_FOLDER, both)
+            found, self._store = _reading(
+                self._folder / DATA_FOLDER, lambda store: (reading(store), store)
+            )
             return found
 
     def ask_within(self, query: str, *, seconds: float) -> Answer:
@@ -228,7 +225,7 @@ def evaluated(store: Oxigraph, query: str) -> Any:
     if sparql.opens_tracks(query):
         from kb.store.track_functions import track_functions  # most of a second, for few queries
 
-        functions = dict(track_functions(store))
+        functions = track_functions(store)
     union = not sparql.names_graphs(query)
     return store.query(query, use_default_graph_as_union=union, custom_functions=functions)
 
@@ -250,7 +247,11 @@ def _locked(folder: Path, wait_s: float) -> int:
             break
         except BlockingIOError:
             if time.monotonic() >= deadline:
-                holder = _holder(os.pread(file, 4096, 0))
+                try:
+                    seen = json.loads(os.pread(file, 4096, 0))
+                    holder = f"process {seen['pid']} on {seen['host']}, since {seen['since']},"
+                except (ValueError, KeyError, TypeError):
+                    holder = "another process"
                 os.close(file)
                 raise LockedError(str(folder), holder) from None
         time.sleep(POLL_S)
@@ -259,14 +260,6 @@ def _locked(folder: Path, wait_s: float) -> int:
     text = json.dumps({"pid": os.getpid(), "host": socket.gethostname(), "since": since})
     os.pwrite(file, text.encode(), 0)
     return file
-
-
-def _holder(text: bytes) -> str:
-    try:
-        seen = json.loads(text)
-        return f"process {seen['pid']} on {seen['host']}, since {seen['since']},"
-    except (ValueError, KeyError, TypeError):
-        return "another process"
 
 
 def _reading(data: Path, reading: Callable[[Oxigraph], _T]) -> _T:
@@ -433,9 +426,6 @@ def _post(url: str, text: str, kind: str) -> tuple[str, bytes]:
 
 # A user's query, in a process of its own
 
-LONGEST = 160
-"""After how many letters a parser's message is cut."""
-
 NOT_ACCEPTED = {"LATERAL", "SERVICE", "[_]"}
 """What a parser expects but a query may not use, and its sign for the end of a query."""
 
@@ -451,12 +441,14 @@ def _asked_within(
             f"{seconds:g} s is no time limit; give a positive number of seconds "
             "(--time-limit SECONDS)"
         )
-    request = {"query": query, "folder": folder, "address": address}
-    data = json.dumps(request).encode() + b"\n" + dump
-    command = [sys.executable, "-P", "-m", "kb.store.stores"]
+    request = json.dumps({"query": query, "folder": folder, "address": address}).encode()
     try:
         done = subprocess.run(
-            command, input=data, capture_output=True, timeout=min(seconds, LONGEST_S), check=False
+            [sys.executable, "-P", "-m", "kb.store.stores"],
+            input=request + b"\n" + dump,
+            capture_output=True,
+            timeout=min(seconds, LONGEST_S),
+            check=False,
         )
     except subprocess.TimeoutExpired:
         raise TimeLimitError(seconds) from None
@@ -502,8 +494,7 @@ def _encoded(store: Oxigraph, query: str) -> tuple[str, bytes]:
 def user_message(problem: str) -> str:
     """A parser's message in short; an unknown function with the names of those that exist."""
     if slip := _NO_FUNCTION.search(problem):
-        ours = [f"capar:{each}" for each in (*sparql.FUNCTIONS, *sparql.ARITIES)]
-        known = [*ours, "those of SPARQL"]
+        known = [*(f"capar:{each}" for each in sparql.FUNCTIONS), "those of SPARQL"]
         return str(UnknownNameError("function", answers.short(slip[1]), known))
     first = problem.splitlines()[0] if problem else ""
     before, expected, listed = first.partition("expected ")
@@ -512,7 +503,7 @@ def user_message(problem: str) -> str:
         several = "one of " if len(taken) > 1 else ""
         missing = "something is missing here or before"
         first = before + (expected + several + ", ".join(taken) if taken else missing)
-    return "no SPARQL: " + (first if len(first) <= LONGEST else first[:LONGEST] + " ...")
+    return "no SPARQL: " + (first if len(first) <= 160 else first[:160] + " ...")
 
 
 if __name__ == "__main__":

@@ -45,8 +45,11 @@ def track_functions(store: Oxigraph) -> dict[NamedNode, Callable[..., Literal | 
     def function(bodies: int, computed: Callable[..., Any]) -> Callable[..., Literal | None]:
         def called(observation: Any, *given: Any) -> Literal | None:
             tracks = [track(observation, each) for each in given[:bodies]]
-            times = [_seconds(each) for each in given[bodies:]]
-            if None in times or any(each is None for each in tracks):
+            try:
+                times = [float(each.value) for each in given[bodies:]]
+            except (AttributeError, ValueError):
+                return None
+            if any(each is None for each in tracks) or times != sorted(times):
                 return None
             value = np.asarray(computed(*tracks, *times))
             if value.size == 0 or not np.isfinite(value).all():
@@ -55,21 +58,21 @@ def track_functions(store: Oxigraph) -> dict[NamedNode, Callable[..., Literal | 
 
         return called
 
+    def highest_speed(track: SampledTrack, start_s: float, end_s: float) -> Any:
+        return np.max([_speed(track, time) for time in _times(track, start_s, end_s)])
+
+    def path_length(track: SampledTrack, start_s: float, end_s: float) -> Any:
+        places = np.array([_at(track, each) for each in _times(track, start_s, end_s)])
+        return np.linalg.norm(np.diff(places, axis=0), axis=1).sum()
+
     functions = {
         "position": function(1, _at),
         "speed": function(1, _speed),
         "distance": function(2, lambda a, b, time: np.linalg.norm(_at(a, time) - _at(b, time))),
-        "highestSpeed": function(1, _highest_speed),
-        "pathLength": function(1, _path_length),
+        "highestSpeed": function(1, highest_speed),
+        "pathLength": function(1, path_length),
     }
     return {NamedNode(BASE + name): each for name, each in functions.items()}
-
-
-def _seconds(term: Any) -> float | None:
-    try:
-        return float(term.value)
-    except (AttributeError, ValueError):
-        return None
 
 
 def _at(track: SampledTrack, time_s: float) -> Place:
@@ -92,20 +95,8 @@ def _speed(track: SampledTrack, time_s: float) -> float:
 
 
 def _times(track: SampledTrack, start_s: float, end_s: float) -> list[float]:
-    """Two times in order, and those of the samples between them [s]; else none."""
-    if end_s < start_s:
-        return []
+    """Two times in order, and those of the samples between them [s]."""
     if track.step_s == 0.0:
         return [start_s, end_s]
     inner = np.arange(np.ceil(start_s / track.step_s), np.floor(end_s / track.step_s) + 1)
     return [start_s, *(inner * track.step_s), end_s]
-
-
-def _highest_speed(track: SampledTrack, start_s: float, end_s: float) -> list[float] | float:
-    speeds = [_speed(track, time) for time in _times(track, start_s, end_s)]
-    return float(np.max(speeds)) if speeds else []
-
-
-def _path_length(track: SampledTrack, start_s: float, end_s: float) -> list[float] | float:
-    places = np.array([_at(track, each) for each in _times(track, start_s, end_s)])
-    return float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum()) if len(places) else []

@@ -15,43 +15,9 @@ from ontology import files as ontology_files
 SCHEMA = 4
 """The version that this program reads and writes."""
 
-FIRST = 1
-"""The version of a store that states none."""
-
-_STATED = f"SELECT ?version WHERE {{ {GRAPHS['ontology']} {CAPAR.schemaVersion} ?version }}"
-_WRITTEN = (
-    f"ASK {{ {{ {GRAPHS['ontology']} {CAPAR.sha256} ?digest }} "
-    f"UNION {{ ?seen a {CAPAR.Observation} }} }}"
-)
-
-
-def statement() -> Quad:
-    """What a store of this version says of itself."""
-    graph = GRAPHS["ontology"]
-    return Quad(graph, CAPAR.schemaVersion, Literal(SCHEMA), graph)
-
-
-def version(store: Store) -> int | None:
-    """The version of a store; None if it is empty."""
-    rows = store.ask(_STATED).rows
-    if rows:
-        return _number(rows[0][0])
-    return FIRST if store.ask(_WRITTEN).boolean else None
-
-
-def version_of(quads: Iterable[Quad]) -> int | None:
-    """The version of exported statements; None if there is no observation among them."""
-    written = False
-    for quad in quads:
-        if quad.predicate == CAPAR.schemaVersion and quad.subject == GRAPHS["ontology"]:
-            return _number(quad.object)
-        written = written or (quad.predicate == TYPE and quad.object == CAPAR.Observation)
-    return FIRST if written else None
-
-
-def _number(term: object) -> int:
-    text = term.value if isinstance(term, Literal | NamedNode) else ""
-    return int(text) if text.isascii() and text.isdecimal() else 0
+ONTOLOGY = GRAPHS["ontology"]
+VERSION = Quad(ONTOLOGY, CAPAR.schemaVersion, Literal(SCHEMA), ONTOLOGY)
+"""What a store of this version says of itself."""
 
 
 def check_current(store: Store) -> None:
@@ -60,16 +26,33 @@ def check_current(store: Store) -> None:
     Raises:
         SchemaError: It is of another one; the message says what to do.
     """
-    check_version(store.place, version(store))
+    query = f"SELECT ?version {{ {ONTOLOGY} {CAPAR.schemaVersion} ?version }}"
+    written = (
+        f"ASK {{ {{ {ONTOLOGY} {CAPAR.sha256} ?digest }} UNION {{ ?seen a {CAPAR.Observation} }} }}"
+    )
+    rows = store.ask(query).rows
+    if rows or store.ask(written).boolean:
+        _check(store.place, rows[0][0] if rows else Literal(1))
 
 
-def check_version(place: str, found: int | None) -> None:
-    """Check that what a store or a file holds is of this version, or that it holds nothing.
+def check_version(place: str, quads: Iterable[Quad]) -> None:
+    """Check that statements with an observation are of this version.
 
     Raises:
-        SchemaError: It is of another one.
+        SchemaError: They are of another one.
     """
-    if found is not None and found != SCHEMA:
+    written = False
+    for quad in quads:
+        if quad.predicate == CAPAR.schemaVersion and quad.subject == ONTOLOGY:
+            return _check(place, quad.object)
+        written = written or (quad.predicate == TYPE and quad.object == CAPAR.Observation)
+    return _check(place, Literal(1)) if written else None
+
+
+def _check(place: str, term: object) -> None:
+    text = term.value if isinstance(term, Literal | NamedNode) else ""
+    found = int(text) if text.isascii() and text.isdecimal() else 0
+    if found != SCHEMA:
         remedy = f"this program reads schema {SCHEMA}; observe the captures again"
         newer = ", or install the capar that wrote it" if found > SCHEMA else ""
         raise SchemaError(place, found, f"{remedy}{newer}")
@@ -87,19 +70,12 @@ def replacement(graph: NamedNode, quads: list[Quad]) -> str:
     return f"{removal(graph)} ;\n{insertion(quads)}"
 
 
-def graph_replacement(graph: NamedNode, quads: list[Quad]) -> str:
-    """The update that gives a graph these statements and no others."""
-    return f"DROP SILENT GRAPH {graph} ;\n{insertion(quads)}"
-
-
 def ontology_digest() -> Quad:
     """What distinguishes the ontology of a store from another one."""
-    graph = GRAPHS["ontology"]
-    return Quad(graph, CAPAR.sha256, Literal(ontology_files.digest()), graph)
+    return Quad(ONTOLOGY, CAPAR.sha256, Literal(ontology_files.digest()), ONTOLOGY)
 
 
 def ontology_replacement() -> str:
     """The update that gives a store the present ontology and schema version."""
-    graph = GRAPHS["ontology"]
-    stated = [Quad(s, p, o, graph) for s, p, o in ontology_files.ontology()]
-    return graph_replacement(graph, [*stated, ontology_digest(), statement()])
+    stated = [Quad(s, p, o, ONTOLOGY) for s, p, o in ontology_files.ontology()]
+    return f"DROP SILENT GRAPH {ONTOLOGY} ;\n{insertion([*stated, ontology_digest(), VERSION])}"

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from pyoxigraph import BlankNode, Literal, NamedNode, Quad, Triple
 
@@ -58,59 +58,47 @@ class Rule:
     """Another property whose value may not be smaller."""
 
 
-def _text_of(value: Node) -> str:
-    assert not isinstance(value, BlankNode)
-    return value.value
-
-
 @cache
 def rules() -> tuple[Rule, ...]:
     """What every shape asks, shape by shape."""
     found = []
     for file in shape_files():
-        said: dict[object, dict[str, list[Node]]] = {}
+        said: dict[object, dict[str, list[Any]]] = {}
         for triple in read(file):
-            assert not isinstance(triple.object, Triple)
             name = triple.predicate.value.removeprefix(SH)
             said.setdefault(triple.subject, {}).setdefault(name, []).append(triple.object)
         for node, shape in said.items():
             for target in shape.get("targetClass", ()):
-                found += [_rule(str(node), target, said, each) for each in shape["property"]]
+                for asked in (said[each] for each in shape["property"]):
+
+                    def one(key: str, default: Any = None, asked: Any = asked) -> Any:
+                        return asked[key][0] if key in asked else default
+
+                    among = set()
+                    link = one("in")
+                    while link in said:
+                        among.add(str(said[link][RDF + "first"][0]))
+                        link = said[link][RDF + "rest"][0]
+                    pattern = one("pattern")
+                    found.append(
+                        Rule(
+                            shape=str(node),
+                            target=target,
+                            path=one("path"),
+                            message=one("message").value,
+                            least=int(one("minCount", Literal(0)).value),
+                            most=float(one("maxCount", Literal("inf")).value),
+                            datatype=one("datatype"),
+                            is_iri=one("nodeKind") == NamedNode(SH + "IRI"),
+                            of_class=one("class"),
+                            among=frozenset(among),
+                            pattern=pattern and re.compile(pattern.value),
+                            lowest=float(one("minInclusive", Literal("-inf")).value),
+                            highest=float(one("maxInclusive", Literal("inf")).value),
+                            at_most=one("lessThanOrEquals"),
+                        )
+                    )
     return tuple(found)
-
-
-def _rule(name: str, target: Node, said: dict[object, dict[str, list[Node]]], node: Node) -> Rule:
-    asked = said[node]
-
-    def one(key: str, default: str) -> str:
-        return _text_of(asked[key][0]) if key in asked else default
-
-    def term(key: str) -> NamedNode | None:
-        return NamedNode(one(key, "")) if key in asked else None
-
-    pattern = one("pattern", "")
-    return Rule(
-        shape=name,
-        target=NamedNode(_text_of(target)),
-        path=NamedNode(one("path", "")),
-        message=one("message", ""),
-        least=int(one("minCount", "0")),
-        most=float(one("maxCount", "inf")),
-        datatype=term("datatype"),
-        is_iri=one("nodeKind", "") == SH + "IRI",
-        of_class=term("class"),
-        among=frozenset(_list(said, asked["in"][0])) if "in" in asked else frozenset(),
-        pattern=re.compile(pattern) if pattern else None,
-        lowest=float(one("minInclusive", "-inf")),
-        highest=float(one("maxInclusive", "inf")),
-        at_most=term("lessThanOrEquals"),
-    )
-
-
-def _list(said: dict[object, dict[str, list[Node]]], node: Node) -> Iterable[str]:
-    while node in said:
-        yield str(said[node][RDF + "first"][0])
-        node = said[node][RDF + "rest"][0]
 
 
 @cache
@@ -135,7 +123,10 @@ def faults(things: Things, *, elsewhere: Kinds = lambda thing: ()) -> tuple[str,
         broken = [*_nlt_problems(said)]
         if isinstance(thing, NamedNode):
             whole = NamedNode(f"{thing.value.partition('#')[0]}#capture")
-            broken += [*_contradictions(said, things.get(whole, {})), *_unknown_words(said)]
+            broken += _contradictions(said, things.get(whole, {}))
+            words = [("property", each) for each in said]
+            words += [("class", each) for each in said.get(TYPE, ())]  # type: ignore[misc]
+            broken += filter(None, (_unknown(kind, word.value) for kind, word in words))
         found |= {f"{short(thing)}: {each}" for each in broken}
     return tuple(sorted(found))
 
@@ -169,11 +160,7 @@ def by_thing(statements: Iterable[Triple | Quad]) -> Things:
 
 
 def check_statements(name: str, things: Things) -> None:
-    """Refuse statements that break the model.
-
-    Raises:
-        ShapeError: They do; it says where and how.
-    """
+    """Refuse statements that break the model, with a ShapeError."""
     if found := faults(things):
         raise ShapeError(f"observation {name!r}", found)
 
@@ -188,25 +175,19 @@ def _obeys(said: Properties, rule: Rule, kinds: Kinds) -> bool:
     )
 
 
-def _is_of_type(value: Node, rule: Rule, kinds: Kinds) -> bool:
-    """Whether a value is a thing of the class, or a literal of the datatype, that is asked."""
-    if rule.of_class or rule.is_iri:
-        named = isinstance(value, NamedNode)
-        return named and (rule.of_class is None or _is_of(value, rule.of_class, kinds))
-    return not rule.datatype or (isinstance(value, Literal) and value.datatype == rule.datatype)
-
-
-def _is_of(value: Node, asked: NamedNode, kinds: Kinds) -> bool:
-    below = classes_below(asked)
-    return isinstance(value, NamedNode) and any(e == asked or e in below for e in kinds(value))
-
-
 def _fits(value: Node, rule: Rule, kinds: Kinds) -> bool:
-    if not _is_of_type(value, rule, kinds):
+    """Whether a value is of the class or datatype, and in the range, that are asked."""
+    if rule.of_class or rule.is_iri:
+        if not isinstance(value, NamedNode):
+            return False
+        if rule.of_class:
+            asked = {rule.of_class, *classes_below(rule.of_class)}
+            if asked.isdisjoint(kinds(value)):  # type: ignore[arg-type]
+                return False
+    elif rule.datatype and not (isinstance(value, Literal) and value.datatype == rule.datatype):
         return False
-    if rule.among and str(value) not in rule.among:
-        return False
-    if rule.pattern and not (not isinstance(value, BlankNode) and rule.pattern.search(value.value)):
+    named = not rule.among or str(value) in rule.among
+    if not named or (rule.pattern and not rule.pattern.search(value.value)):
         return False
     if rule.lowest > -math.inf or rule.highest < math.inf:
         return rule.lowest <= _number(value) <= rule.highest
@@ -215,7 +196,7 @@ def _fits(value: Node, rule: Rule, kinds: Kinds) -> bool:
 
 def _number(value: Node) -> float:
     try:
-        return float(_text_of(value))
+        return float(value.value)
     except ValueError:
         return math.nan
 
@@ -237,15 +218,6 @@ def _nlt_problems(said: Properties) -> Iterator[str]:
                     )
 
 
-def _unknown_words(said: Properties) -> Iterator[str]:
-    """Properties and classes that look like ours and are not."""
-    words = [("property", each) for each in said]
-    words += [("class", each) for each in said.get(TYPE, ()) if isinstance(each, NamedNode)]
-    for kind, word in words:
-        if problem := _unknown(kind, word.value):
-            yield problem
-
-
 @cache
 def _unknown(kind: str, iri: str) -> str:
     name = iri.removeprefix(BASE)
@@ -261,8 +233,12 @@ def _contradictions(said: Properties, capture: Properties) -> Iterator[str]:
     start, end, lasts = (_first(said, e) for e in (CAPAR.start, CAPAR.end, CAPAR.duration))
     if abs(lasts - (end - start)) > max(1e-6, 1e-6 * abs(lasts)):
         yield f"It lasts from {start:g} to {end:g} s, which is not {lasts:g} s."
+
+    def apart(frames: float, others: float) -> bool:
+        return abs(frames - others) > FRAMES_APART + 0.01 * abs(frames)
+
     frames, own_rate = _first(said, CAPAR.frames), _first(said, CAPAR.rate)
-    if _apart(frames - 1, lasts * own_rate):
+    if apart(frames - 1, lasts * own_rate):
         yield f"{frames:g} frames at {own_rate:g} a second do not last {lasts:g} s."
     rate = _first(capture, CAPAR.rate)
     for frame_at, time_at in (
@@ -271,7 +247,7 @@ def _contradictions(said: Properties, capture: Properties) -> Iterator[str]:
         (CAPAR.frame, CAPAR.time),
     ):
         frame, time = _first(said, frame_at), _first(said, time_at)
-        if _apart(frame, time * rate):
+        if apart(frame, time * rate):
             yield f"Frame {frame:g} at {rate:g} a second is not at {time:g} s."
     for value in said.get(CAPAR.size, ()):
         try:
@@ -281,10 +257,6 @@ def _contradictions(said: Properties, capture: Properties) -> Iterator[str]:
         if any(not 0.0 <= each <= LARGEST_M for each in lengths):
             stated = " x ".join(f"{each:g}" for each in lengths)
             yield f"A size of {stated} m is impossible; lengths are in metres."
-
-
-def _apart(frames: float, others: float) -> bool:
-    return abs(frames - others) > FRAMES_APART + 0.01 * abs(frames)
 
 
 def _first(said: Properties, predicate: NamedNode) -> float:

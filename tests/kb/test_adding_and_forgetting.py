@@ -51,8 +51,9 @@ def test_a_second_capture_is_recognised_and_only_its_own_is_added(actionary: Act
     assert (added.action, added.recognised) == ("DrinkFromMug", "DrinkFromMug")
     kept = actionary.store.graph(names.GRAPHS["actions"])
     assert {str(each) for each in kept} <= shared
-    assert len(actionary.styles(action="Reach")) == 2
-    assert len(actionary.locations("mug", action="Reach")) == 2
+    for kind in ("AgentStyle", "ConstraintLocation"):
+        query = f'SELECT ?s {{ ?s a capar:{kind} ; capar:actionName "Reach" }}'
+        assert len(actionary.query(query).rows) == 2
     rows = actionary.ask("performers", action="DrinkFromMug")
     assert [row["performer"] for row in rows] == ["ann", "ben"]
     complexes = actionary.store.ask(
@@ -89,8 +90,6 @@ def test_forgetting_the_first_of_two_keeps_what_the_second_says(actionary: Actio
 
 
 def test_what_a_user_declared_is_not_forgotten(actionary: Actionary) -> None:
-    features = drink_from_mug().segments[0].features
-    actionary.add_feature_row("Reach", features)
     actionary.add_ability("Reach", agent="agent")
     before = statements(actionary)
     actionary.add(drink_from_mug())

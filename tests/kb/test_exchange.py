@@ -12,7 +12,7 @@ from pyoxigraph import Quad
 
 from capar.model.errors import FileError, UnknownNameError
 from capar.model.observation import Border, Observation
-from capar.model.par import FeatureSet, Nlt, PathPoint
+from capar.model.par import FeatureSet, Nlt
 from kb.actionary import Actionary
 from kb.encode.observation import BORDER_KINDS
 from kb.errors import ShapeError
@@ -39,8 +39,6 @@ def full() -> Actionary:
     made = (drink_from_mug(), pick_up_with_both_hands(), with_unknown(), with_every_border())
     for each in made:
         actionary.add(each)
-    actionary.define_kind("stein", broader="mug")
-    actionary.add_feature_row("Swap", with_unknown().segments[1].features)
     actionary.add_ability("Swap", agent="ann")
     actionary.add_ability("Pour", kind="container")
     return actionary
@@ -194,11 +192,6 @@ def test_an_nlt_keeps_every_bit(
 ) -> None:
     value = Nlt(place, turn)
     assert statements.nlt_of(statements.nlt(value).value) == value
-
-
-@given(st.lists(st.builds(PathPoint, finite, st.tuples(finite, finite, finite))))
-def test_a_path_keeps_every_bit(points: list[PathPoint]) -> None:
-    assert statements.path_of(statements.path(points).value) == tuple(points)
 
 
 @pytest.mark.parametrize("text", ["1 2 3", "1 2 3 1 0 0 nan", "1 2 3 1 0 0 x", "1 2 3 1 0 0 inf"])
