@@ -19,7 +19,6 @@ from capar.body.scripts import (
     Script,
     between,
     minimum_jerk,
-    slowed,
     tossed,
     turned_about,
 )
@@ -402,7 +401,8 @@ class Actor:
         """Where a palm is to be: first up, then forward; on the way back the other way round."""
         hand, start = phase.hand(side), self.starts[side]
         if hand.does == "lets_go":
-            by = slowed(hand.velocity, share * phase.seconds, FOLLOW_S)
+            past = min(share * phase.seconds, FOLLOW_S)  # it slows down evenly until it stops
+            by = np.array(hand.velocity) * (past - 0.5 * past**2 / FOLLOW_S)
             return RigidTransform.from_translation(by) * start
         if hand.does == "rests":
             goal = self.home[side]

@@ -20,25 +20,20 @@ from capar.body.scenes import (
     table,
 )
 from capar.body.scripts import (
+    SIDES,
+    Move,
     Script,
-    carry,
-    carry_together,
-    carry_tray,
+    Step,
+    Vector,
     drink,
     hand_over,
+    handling,
     lift_with_both_hands,
-    pour,
-    pull_open,
-    push,
-    push_open,
     sip,
     slide,
     toss,
     touch,
-    touch_from_rest,
-    turn,
     vector,
-    wipe,
 )
 from capar.body.sensors import PERFECT, Tracker
 from capar.model.capture import Capture, TagType
@@ -51,22 +46,68 @@ TOSS_TABLE_M, OFFER_M = 0.8073, 0.12
 """Height of the table above which is thrown, unless hips are lower, and how far above a table a mug
 is handed over [m]."""
 
+TURNED = Move(turn=(0.0, 0.0, float(np.radians(40.0))))
+SWUNG = Move(turn=(0.0, 0.0, float(np.radians(32.0))), about=(0.0, HINGE_M, 0.0))
+PUSHED = Move((0.15 * np.cos(ASKEW), 0.15 * np.sin(ASKEW), 0.0))
+LEANT = float(np.radians(80.0))
+GRASP: Step = ("grasp", 0.4, None)
+TOUCH: Step = ("touch", 0.4, None)
+STAY: Step = ("stay", 0.4, None)
+
+
+def _once(first: Step, name: str, seconds: float, move: Move, hold_s: float) -> list[Step]:
+    """One motion between a moment of touching and one of holding."""
+    return [first, (name, seconds, move), ("hold", hold_s, None)]
+
+
+def _carried(pause_s: float, lift_s: float, carry_s: float, by: Vector, end: str) -> list[Step]:
+    """Lift, carry and lower; the height is that of the lift [m]."""
+    ahead, left, up = by
+    return [
+        ("grasp", pause_s, None),
+        ("lift", lift_s, Move((0.0, 0.0, up))),
+        ("carry", carry_s, Move((ahead, left, 0.0))),
+        ("lower", lift_s, Move((0.0, 0.0, -up))),
+        (end, pause_s, None),
+    ]
+
+
+TRAY = _carried(0.3, 1.0, 1.1, (-0.12, 0.0, 0.15), "release")
+TWO = _carried(0.4, 0.9, 0.9, (0.0, 0.2, 0.2), "release")
+DOOR = _once(TOUCH, "open", 1.2, SWUNG, 0.4)
+DRAWER = _once(TOUCH, "open", 1.0, Move((-0.15, 0.0, 0.0)), 0.4)
+STROKES: list[Step] = [("stroke", 0.5, Move((0.0, by_m, 0.0))) for by_m in (0.14, -0.14) * 3]
+POUR: list[Step] = [
+    GRASP,
+    ("lift", 0.9, Move((0.0, 0.0, 0.18))),
+    ("bring", 0.9, Move((0.0, 0.25, 0.0))),
+    STAY,
+    ("lean", 1.0, Move(turn=(-LEANT, 0.0, 0.0))),
+    ("pour", 0.5, None),
+    ("right", 1.0, Move(turn=(LEANT, 0.0, 0.0))),
+    STAY,
+    ("bring back", 0.9, Move((0.0, -0.25, 0.0))),
+    STAY,
+    ("lower", 0.9, Move(home=True)),
+    ("release", 0.4, None),
+]
+
 ACTIONS: dict[str, Script] = {
     "drink": drink("mug"),
     "sip": sip("mug"),
     "touch": touch("crate"),
-    "touch_from_rest": touch_from_rest("crate"),
+    "touch_from_rest": touch("crate", seconds=1.4)[:3],
     "slide": slide("mug", (0.0, 0.12, 0.0)),
-    "carry": carry("mug"),
+    "carry": handling("mug", _carried(0.3, 0.8, 0.9, (0.0, 0.2, 0.2), "hold")),
     "pick_up": lift_with_both_hands("crate", height=0.2),
-    "turn": turn("mug", float(np.radians(40.0))),
-    "push": push("crate", (0.15 * np.cos(ASKEW), 0.15 * np.sin(ASKEW), 0.0)),
-    "carry_tray": carry_tray("tray", "mug"),
-    "carry_two": carry_together("tin", ("carton",), (0.0, 0.2, 0.2)),
-    "pour": pour("mug", lift=0.18, over=(0.0, 0.25, 0.0), angle=float(np.radians(80.0))),
-    "door": push_open("door", float(np.radians(32.0)), hinge=(0.0, HINGE_M, 0.0)),
-    "drawer": pull_open("drawer", 0.15),
-    "wipe": wipe("sponge", 0.14),
+    "turn": handling("mug", _once(GRASP, "turn", 0.9, TURNED, 0.4)),
+    "push": handling("crate", _once(TOUCH, "push", 0.9, PUSHED, 0.3), grip="back", reach_s=1.1),
+    "carry_tray": handling("tray", TRAY, sides=SIDES, load=("mug",), reach_s=1.1),
+    "carry_two": handling("tin", TWO, beside=("carton",)),
+    "pour": handling("mug", POUR),
+    "door": handling("door", DOOR, grip="back", reach_s=1.1, back_s=1.1),
+    "drawer": handling("drawer", DRAWER, grip="top"),
+    "wipe": handling("sponge", [TOUCH, *STROKES, ("hold", 0.4, None)], grip="top"),
     "toss": toss("mug"),
 }
 """Each has the objects of its own scene. Those of thesis 5.2 are ``sip`` (DrinkFromMug), ``touch``
@@ -107,12 +148,7 @@ def action_scene(human: Human, action: str) -> Scene:
 
 @cache
 def performed(action: str, who: str = "man", *, rate_hz: float = 60.0) -> Performance:
-    """An action as a ready-made body performs it.
-
-    Args:
-        action: One of ``ACTIONS``.
-        who: ``man``, ``woman`` or ``child``.
-        rate_hz: Frames a second.
+    """An action of ``ACTIONS`` as a ``man``, ``woman`` or ``child`` performs it.
 
     Raises:
         UnknownNameError: There is no such action or body.
@@ -135,12 +171,7 @@ def action_capture(
 def performed_together(
     action: str, bodies: tuple[str, str] = ("man", "woman"), *, rate_hz: float = 60.0
 ) -> dict[str, Performance]:
-    """An action as two ready-made bodies perform it across a table, by the names of their agents.
-
-    Args:
-        action: One of ``JOINT_ACTIONS``.
-        bodies: Two of ``man``, ``woman`` and ``child``.
-        rate_hz: Frames a second.
+    """An action of ``JOINT_ACTIONS`` as two bodies perform it across a table, by agent.
 
     Raises:
         UnknownNameError: There is no such action or body.

@@ -112,226 +112,98 @@ class Phase:
 
 
 Script = tuple[Phase, ...]
-Step = tuple[str, float, Mapping[str, Move]]
-"""Name, length [s] and moves of a phase in which something is held."""
+Step = tuple[str, float, Move | None]
+"""Name, length [s] and motion of the object in a phase in which it is held."""
 
 STAND = Phase("stand", 0.6, look="ahead")
 
 
 def handling(
-    hands: Mapping[str, Hand], steps: Sequence[Step], *, reach_s: float = 1.0, back_s: float = 1.0
+    thing: str,
+    steps: Sequence[Step],
+    *,
+    sides: Sequence[str] = ("right",),
+    grip: str = "side",
+    beside: tuple[str, ...] = (),
+    load: tuple[str, ...] = (),
+    reach_s: float = 1.0,
+    back_s: float = 1.0,
 ) -> Script:
     """Stand, reach for an object, go through steps while it is held, and return.
 
     Args:
-        hands: That hold it, by side.
-        steps: What happens meanwhile; the gaze is on the object, or ahead if it is at the mouth.
+        thing: What is held; the gaze is on it, or ahead while it is at the mouth.
+        steps: What happens meanwhile.
+        sides: Of the hands that hold it.
+        grip: Of these hands.
+        beside: Other objects in the same palm, which move alike.
+        load: Objects on it, which move alike.
         reach_s: How long reaching takes [s].
         back_s: How long the way back takes [s].
     """
-    thing = next(iter(hands.values())).thing
-    reaching = {side: replace(hand, does="reaches") for side, hand in hands.items()}
-
-    def look(moves: Mapping[str, Move]) -> str:
-        return "ahead" if any(move.to_mouth for move in moves.values()) else thing
-
-    return (
-        STAND,
-        Phase("reach", reach_s, reaching, look=thing),
-        *(Phase(name, seconds, hands, moves, look(moves)) for name, seconds, moves in steps),
-        Phase("return", back_s, look="ahead"),
-        STAND,
+    reaches, holds = (
+        {side: Hand(does, thing, grip, beside) for side in sides} for does in ("reaches", "holds")
     )
+    held = []
+    for name, seconds, move in steps:
+        moves = {each: move for each in (thing, *beside, *load)} if move else {}
+        look = "ahead" if move and move.to_mouth else thing
+        held.append(Phase(name, seconds, holds, moves, look))
+    reach = Phase("reach", reach_s, reaches, look=thing)
+    return (STAND, reach, *held, Phase("return", back_s, look="ahead"), STAND)
 
 
 def touch(thing: str, *, side: str = "right", grip: str = "top", seconds: float = 0.8) -> Script:
     """Lay a hand on an object, keep it there, and go back."""
-    return handling({side: Hand("holds", thing, grip)}, [("touch", seconds, {})])
+    return handling(thing, [("touch", seconds, None)], sides=(side,), grip=grip)
 
 
-def touch_from_rest(
-    thing: str, *, side: str = "right", grip: str = "top", seconds: float = 1.4
-) -> Script:
-    """Lay a hand on an object, and keep it there to the end (thesis 5.2.2)."""
-    return touch(thing, side=side, grip=grip, seconds=seconds)[:3]
-
-
-def slide(thing: str, by: Vector, *, side: str = "right") -> Script:
+def slide(thing: str, by: Vector) -> Script:
     """Take an object at its side and slide it along what it stands on, by so far [m]."""
-    steps: list[Step] = [("grasp", 0.3, {}), ("slide", 0.9, {thing: Move(by)}), ("hold", 0.3, {})]
-    return handling({side: Hand("holds", thing)}, steps)
+    return handling(thing, [("grasp", 0.3, None), ("slide", 0.9, Move(by)), ("hold", 0.3, None)])
 
 
-def carry(thing: str, *, up_m: float = 0.2, left_m: float = 0.2, side: str = "right") -> Script:
-    """Lift an object, carry it to the left and put it down."""
-    steps: list[Step] = [
-        ("grasp", 0.3, {}),
-        ("lift", 0.8, {thing: Move((0.0, 0.0, up_m))}),
-        ("carry", 0.9, {thing: Move((0.0, left_m, 0.0))}),
-        ("lower", 0.8, {thing: Move((0.0, 0.0, -up_m))}),
-        ("hold", 0.3, {}),
-    ]
-    return handling({side: Hand("holds", thing)}, steps)
-
-
-def carry_tray(tray: str, load: str, *, up_m: float = 0.15, nearer_m: float = 0.12) -> Script:
-    """Lift a tray with both hands, carry it nearer with what stands on it, and put it down."""
-
-    def both(ahead_m: float, rise_m: float) -> dict[str, Move]:
-        return {name: Move((ahead_m, 0.0, rise_m)) for name in (tray, load)}
-
-    steps: list[Step] = [
-        ("grasp", 0.3, {}),
-        ("lift", 1.0, both(0.0, up_m)),
-        ("carry", 1.1, both(-nearer_m, 0.0)),
-        ("lower", 1.0, both(0.0, -up_m)),
-        ("release", 0.3, {}),
-    ]
-    return handling({side: Hand("holds", tray) for side in SIDES}, steps, reach_s=1.1)
-
-
-def carry_together(
-    thing: str, beside: tuple[str, ...], by: Vector, *, side: str = "right"
-) -> Script:
-    """Take several objects in one palm, lift them, carry them aside and put them down together.
-
-    Args:
-        thing: On which the middle of the palm lies.
-        beside: The others.
-        by: How far they are carried, the height being that of the lift [m].
-        side: Which hand.
-    """
-    x, y, up = by
-
-    def all_move(*way: float) -> dict[str, Move]:
-        return {name: Move((way[0], way[1], way[2])) for name in (thing, *beside)}
-
-    steps: list[Step] = [
-        ("grasp", 0.4, {}),
-        ("lift", 0.9, all_move(0.0, 0.0, up)),
-        ("carry", 0.9, all_move(x, y, 0.0)),
-        ("lower", 0.9, all_move(0.0, 0.0, -up)),
-        ("release", 0.4, {}),
-    ]
-    return handling({side: Hand("holds", thing, beside=beside)}, steps)
-
-
-def push(thing: str, by: Vector, *, side: str = "right") -> Script:
-    """Lay a palm on the near side of an object and push it away over what it stands on."""
-    steps: list[Step] = [("touch", 0.4, {}), ("push", 0.9, {thing: Move(by)}), ("hold", 0.3, {})]
-    return handling({side: Hand("holds", thing, "back")}, steps, reach_s=1.1)
-
-
-def push_open(thing: str, angle: float, *, hinge: Vector, side: str = "right") -> Script:
-    """Lay a palm on a door and push it away about its hinge.
-
-    Args:
-        thing: The door.
-        angle: How far, seen from above against the clock [rad].
-        hinge: A point of its upright hinge in its frame [m].
-        side: Which hand.
-    """
-    move = Move(turn=(0.0, 0.0, angle), about=hinge)
-    steps: list[Step] = [("touch", 0.4, {}), ("open", 1.2, {thing: move}), ("hold", 0.4, {})]
-    return handling({side: Hand("holds", thing, "back")}, steps, reach_s=1.1, back_s=1.1)
-
-
-def pull_open(thing: str, by_m: float, *, side: str = "right") -> Script:
-    """Lay a hand on top of a drawer and pull it out, towards oneself [m]."""
-    move = Move((-by_m, 0.0, 0.0))
-    steps: list[Step] = [("touch", 0.4, {}), ("open", 1.0, {thing: move}), ("hold", 0.4, {})]
-    return handling({side: Hand("holds", thing, "top")}, steps)
-
-
-def wipe(thing: str, by_m: float, *, strokes: int = 6, side: str = "right") -> Script:
-    """Lay a hand on an object and move it to and fro over what it lies on.
-
-    Args:
-        thing: What is wiped with.
-        by_m: How far each stroke leads to a side [m].
-        strokes: How many, there and back counted apart.
-        side: Which hand.
-    """
-    moves = [Move((0.0, by_m if number % 2 == 0 else -by_m, 0.0)) for number in range(strokes)]
-    steps: list[Step] = [("stroke", 0.5, {thing: move}) for move in moves]
-    steps = [("touch", 0.4, {}), *steps, ("hold", 0.4, {})]
-    return handling({side: Hand("holds", thing, "top")}, steps)
-
-
-def turn(thing: str, angle: float, *, side: str = "right") -> Script:
-    """Take an object at its side and turn it about the vertical where it stands, by [rad]."""
-    move = Move(turn=(0.0, 0.0, angle))
-    steps: list[Step] = [("grasp", 0.4, {}), ("turn", 0.9, {thing: move}), ("hold", 0.4, {})]
-    return handling({side: Hand("holds", thing)}, steps)
-
-
-def pour(thing: str, *, lift: float, over: Vector, angle: float, side: str = "right") -> Script:
-    """Take an object, bring it to what it is emptied into, lean it over, and put it back.
-
-    Args:
-        thing: What is emptied.
-        lift: How high it is lifted first [m].
-        over: How far it then goes [m].
-        angle: How far it leans over, away from the hand's palm [rad].
-        side: Which hand.
-    """
-    leant = -angle if side == "right" else angle
-    x, y, z = over
-    steps: list[Step] = [
-        ("grasp", 0.4, {}),
-        ("lift", 0.9, {thing: Move((0.0, 0.0, lift))}),
-        ("bring", 0.9, {thing: Move(over)}),
-        ("stay", 0.4, {}),
-        ("lean", 1.0, {thing: Move(turn=(leant, 0.0, 0.0))}),
-        ("pour", 0.5, {}),
-        ("right", 1.0, {thing: Move(turn=(-leant, -0.0, -0.0))}),
-        ("stay", 0.4, {}),
-        ("bring back", 0.9, {thing: Move((-x, -y, -z))}),
-        ("stay", 0.4, {}),
-        ("lower", 0.9, {thing: Move(home=True)}),
-        ("release", 0.4, {}),
-    ]
-    return handling({side: Hand("holds", thing)}, steps)
-
-
-def drink(thing: str, *, side: str = "right", tilt: float = float(np.radians(35.0))) -> Script:
+def drink(thing: str) -> Script:
     """Take a cup, drink, put it back, and go back."""
-    mouth = {thing: Move(to_mouth=True, tilt=tilt)}
-    steps: list[Step] = [
-        ("grasp", 0.3, {}),
-        ("raise", 1.1, mouth),
-        ("drink", 0.8, mouth),
-        ("lower", 1.2, {thing: Move(home=True)}),
-        ("release", 0.3, {}),
-    ]
-    return handling({side: Hand("holds", thing)}, steps)
+    mouth = Move(to_mouth=True, tilt=float(np.radians(35.0)))
+    return handling(
+        thing,
+        [
+            ("grasp", 0.3, None),
+            ("raise", 1.1, mouth),
+            ("drink", 0.8, mouth),
+            ("lower", 1.2, Move(home=True)),
+            ("release", 0.3, None),
+        ],
+    )
 
 
-def sip(thing: str, *, side: str = "right", tilt: float = float(np.radians(40.0))) -> Script:
+def sip(thing: str) -> Script:
     """Drink from a cup in one go, in the six steps and about the times of thesis 5.2.1.
 
     The cup is raised as soon as it is held, tipped further at the mouth, put back and let go.
     """
+    tilt = float(np.radians(40.0))
     steps: list[Step] = [
-        ("raise", 0.8, {thing: Move(to_mouth=True, tilt=0.4 * tilt)}),
-        ("drink", 0.13, {thing: Move(to_mouth=True, tilt=tilt)}),
-        ("lower", 0.58, {thing: Move(home=True)}),
-        ("release", 0.19, {}),
+        ("raise", 0.8, Move(to_mouth=True, tilt=0.4 * tilt)),
+        ("drink", 0.13, Move(to_mouth=True, tilt=tilt)),
+        ("lower", 0.58, Move(home=True)),
+        ("release", 0.19, None),
     ]
-    _, *phases, _ = handling({side: Hand("holds", thing)}, steps, back_s=0.75)
+    _, *phases, _ = handling(thing, steps, back_s=0.75)
     return (replace(STAND, seconds=0.8), *phases)
 
 
 def lift_with_both_hands(thing: str, *, height: float = 0.25) -> Script:
     """Take an object between both palms, lift it, hold it, and put it back."""
     steps: list[Step] = [
-        ("grasp", 0.3, {}),
-        ("lift", 1.0, {thing: Move((0.0, 0.0, height))}),
-        ("hold", 0.5, {}),
-        ("lower", 1.0, {thing: Move(home=True)}),
-        ("release", 0.3, {}),
+        ("grasp", 0.3, None),
+        ("lift", 1.0, Move((0.0, 0.0, height))),
+        ("hold", 0.5, None),
+        ("lower", 1.0, Move(home=True)),
+        ("release", 0.3, None),
     ]
-    return handling({side: Hand("holds", thing) for side in SIDES}, steps, reach_s=1.1)
+    return handling(thing, steps, sides=SIDES, reach_s=1.1)
 
 
 def toss(thing: str) -> Script:
@@ -342,30 +214,28 @@ def toss(thing: str) -> Script:
     swing, stop = 0.5 * SWINGS_S * thrown, 0.5 * STOPS_S * caught
     flight = FLIES_S * thrown + 0.5 * GRAVITY_MPS2 * FLIES_S**2
     meets = THROW_FROM_M + swing + flight
-    down = -float((meets + stop)[2])
     right, left = {"right": Hand("holds", thing)}, {"left": Hand("holds", thing)}
     waits = {**right, "left": Hand("awaits", thing, awaited=vector(meets + AWAITED_M))}
     swings_on = {"right": Hand("lets_go", thing, velocity=THROWN_MPS)}
     flies = {**swings_on, "left": Hand("reaches", thing)}
     catches = {"right": Hand("lets_go", thing), **left}
-    throws = Move(vector(swing), toss=Toss(end=THROWN_MPS))
-    falls = Move(vector(flight), toss=Toss(THROWN_MPS, falls=True))
-    stops = Move(vector(stop), toss=Toss(vector(caught)))
-    return (
-        STAND,
-        Phase("reach", 1.0, {"right": Hand("reaches", thing)}, look=thing),
-        Phase("grasp", 0.3, right, look=thing),
-        Phase("lift", 0.9, waits, {thing: Move(THROW_FROM_M)}, look=thing),
-        Phase("poise", 0.5, waits, look=thing),
-        Phase("throw", SWINGS_S, waits, {thing: throws}, look=thing),
-        Phase("fly", FLIES_S, flies, {thing: falls}, look=thing),
-        Phase("catch", STOPS_S, catches, {thing: stops}, look=thing),
-        Phase("hold", 0.4, catches, look=thing),
-        Phase("lower", 0.9, catches, {thing: Move((0.0, 0.0, down))}, look=thing),
-        Phase("release", 0.4, catches, look=thing),
-        Phase("return", 1.0, look="ahead"),
-        STAND,
+    rows: list[tuple[str, float, Mapping[str, Hand], Move | None]] = [
+        ("reach", 1.0, {"right": Hand("reaches", thing)}, None),
+        ("grasp", 0.3, right, None),
+        ("lift", 0.9, waits, Move(THROW_FROM_M)),
+        ("poise", 0.5, waits, None),
+        ("throw", SWINGS_S, waits, Move(vector(swing), toss=Toss(end=THROWN_MPS))),
+        ("fly", FLIES_S, flies, Move(vector(flight), toss=Toss(THROWN_MPS, falls=True))),
+        ("catch", STOPS_S, catches, Move(vector(stop), toss=Toss(vector(caught)))),
+        ("hold", 0.4, catches, None),
+        ("lower", 0.9, catches, Move((0.0, 0.0, -float((meets + stop)[2])))),
+        ("release", 0.4, catches, None),
+    ]
+    phases = (
+        Phase(name, seconds, hands, {thing: move} if move else {}, thing)
+        for name, seconds, hands, move in rows
     )
+    return (STAND, *phases, Phase("return", 1.0, look="ahead"), STAND)
 
 
 def hand_over(thing: str, thing_to_offer: Vector, offer_to_table: Vector) -> dict[str, Script]:
@@ -424,9 +294,7 @@ def between(first: RigidTransform, last: RigidTransform, way: float) -> RigidTra
     """The pose part of the way from one to the other: straight, turning about one axis."""
     turn = (last.rotation * first.rotation.inv()).as_rotvec()
     spot = first.translation + way * (last.translation - first.translation)
-    return RigidTransform.from_components(
-        spot, type(first.rotation).from_rotvec(way * turn) * first.rotation
-    )
+    return RigidTransform.from_components(spot, Rotation.from_rotvec(way * turn) * first.rotation)
 
 
 def turned_about(pose: RigidTransform, point: Vector, turn: Rotation) -> RigidTransform:
@@ -454,15 +322,3 @@ def tossed(toss: Toss, by: Vector, seconds: float, share: float) -> Float[np.nda
     leaving, arriving = share - 2.0 * share**2 + share**3, share**3 - share**2
     led = goal * (3.0 * share**2 - 2.0 * share**3)
     return np.asarray(led + seconds * (leaving * start + arriving * end))
-
-
-def slowed(velocity: Vector, past_s: float, stops_s: float) -> Float[np.ndarray, "3"]:
-    """How far something goes that decelerates evenly to rest [m].
-
-    Args:
-        velocity: With which it begins [m/s].
-        past_s: Since then [s].
-        stops_s: How long it takes to stop [s].
-    """
-    past = min(past_s, stops_s)
-    return np.asarray(np.array(velocity) * (past - 0.5 * past**2 / stops_s))
