@@ -1,7 +1,7 @@
 """Facts: typed values that are atoms of the rules; a kind states all that others derive from it."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from enum import Enum
 from functools import cache
@@ -34,7 +34,7 @@ class Fact:
         Raises:
             FactError: An integer that the solver cannot hold.
         """
-        values = (getattr(self, name) for name in arguments(cast(Any, type(self))))
+        values = (getattr(self, name) for name in _arguments(cast(Any, type(self))))
         return clingo.Function(self.predicate, [_symbol(each) for each in values])
 
     @classmethod
@@ -44,12 +44,10 @@ class Fact:
         Raises:
             FactError: Another predicate, another number of arguments, or another type.
         """
-        kinds: tuple[type, ...] = _kinds(cast(Any, cls))
+        kinds = _arguments(cast(Any, cls)).values()
         if symbol.name != cls.predicate or len(symbol.arguments) != len(kinds):
             raise FactError(f"{symbol} is no {cls.predicate}/{len(kinds)}")
-        return cls(
-            *(_value(each, kind) for each, kind in zip(symbol.arguments, kinds, strict=True))
-        )
+        return cls(*map(_value, symbol.arguments, kinds))
 
     def __str__(self) -> str:
         """The fact as a line of a logic program, without its full stop.
@@ -57,8 +55,7 @@ class Fact:
         Raises:
             FactError: An integer that the solver cannot hold.
         """
-        values = [getattr(self, name) for name in arguments(cast(Any, type(self)))]
-        return f"{self.predicate}({','.join(map(_text, values))})" if values else self.predicate
+        return program((self,))[:-2]
 
 
 def _symbol(value: Any) -> clingo.Symbol:
@@ -67,13 +64,9 @@ def _symbol(value: Any) -> clingo.Symbol:
     return clingo.Function(value) if NAME.fullmatch(value) else clingo.String(value)
 
 
-def _text(value: int | str) -> str:
-    """The argument as the solver writes it, some ten times faster than by way of its symbol."""
-    return str(_checked_int32(value)) if isinstance(value, int) else _word(value)
-
-
 @cache
 def _word(value: str) -> str:
+    """A name as the solver writes it."""
     return str(_symbol(value))
 
 
@@ -94,21 +87,16 @@ def _value(symbol: clingo.Symbol, kind: type) -> Any:
 
 
 @cache
-def arguments(cls: Any) -> tuple[str, ...]:
-    """The names of the arguments of a kind of fact, in their order."""
-    return tuple(each.name for each in fields(cls))
-
-
-@cache
-def _kinds(cls: Any) -> tuple[type, ...]:
+def _arguments(cls: Any) -> Mapping[str, type]:
+    """The type of every argument of a kind of fact, in their order."""
     hints = get_type_hints(cls)
-    return tuple(hints[each.name] for each in fields(cls))
+    return {each.name: hints[each.name] for each in fields(cls)}
 
 
 def signatures(facts: Iterable[Fact]) -> frozenset[tuple[str, int]]:
     """The predicates of the facts, each with its number of arguments."""
     kinds: set[Any] = {type(fact) for fact in facts}
-    return frozenset((kind.predicate, len(arguments(kind))) for kind in kinds)
+    return frozenset((kind.predicate, len(_arguments(kind))) for kind in kinds)
 
 
 def program(facts: "tuple[Fact, ...]") -> str:
@@ -117,28 +105,22 @@ def program(facts: "tuple[Fact, ...]") -> str:
     Raises:
         FactError: An integer that the solver cannot hold.
     """
-    groups = (_lines(kind, tuple(group)) for kind, group in groupby(facts, type))
-    return "".join(line for lines in groups for line in lines)
-
-
-def _lines(kind: Any, facts: "tuple[Fact, ...]") -> Iterator[str]:
-    """Facts of one kind as lines: by columns, in a third of the time of one after another."""
-    columns = [
-        _column([getattr(fact, name) for fact in facts], argument)
-        for name, argument in zip(arguments(kind), _kinds(kind), strict=True)
-    ]
-    if not columns:
-        return iter([f"{kind.predicate}.\n"] * len(facts))
-    line = f"{kind.predicate}({','.join(['%s'] * len(columns))}).\n"
-    return map(line.__mod__, zip(*columns, strict=True))
-
-
-def _column(values: list[Any], kind: type) -> Iterable[int | str]:
-    """The values of one argument as the solver writes them."""
-    if kind is not int:
-        return map(_word, values)
-    _checked_int32(max(values, key=abs))
-    return values
+    lines: list[str] = []
+    # By columns of one kind, in a third of the time of one fact after another.
+    for kind, group in groupby(facts, cast(Any, type)):
+        same = list(group)
+        columns: list[Iterable[int | str]] = []
+        for name, of in _arguments(kind).items():
+            values = [getattr(fact, name) for fact in same]
+            if of is int:
+                _checked_int32(max(values, key=abs))
+            columns.append(values if of is int else map(_word, values))
+        if columns:
+            line = f"{kind.predicate}({','.join(['%s'] * len(columns))}).\n"
+            lines.extend(map(line.__mod__, zip(*columns, strict=True)))
+        else:
+            lines += [f"{kind.predicate}.\n"] * len(same)
+    return "".join(lines)
 
 
 class Span(Enum):
@@ -149,15 +131,16 @@ class Span(Enum):
     INTERVAL = ("first", "last")
 
 
-ALWAYS, INSTANT, INTERVAL = Span
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Declaration:
     """What a kind of fact states about itself."""
 
-    about: str | None = None
-    """The field that names the body that the fact is about; None where it is about no body."""
+    terms: str
+    """The class in the ontology and the property of each argument. Of a sampled kind: of each
+    argument that is a name, and one for the rows of numbers, each led by its frame."""
+
+    about: str
+    """The field that names the body that the fact is about; empty where it is about none."""
 
     span: "Span | type[Observed]"
     """When it holds. A kind of fact: during that kind's interval of the same bodies and the same
@@ -178,10 +161,6 @@ class Declaration:
     negated: str = ""
     """What an interval is taken for that is contradicted as flicker, such as ``apart``; empty
     where flicker is not resolved."""
-
-    terms: str
-    """The class in the ontology and the property of each argument. Of a sampled kind: of each
-    argument that is a name, and one for the rows of numbers, each led by its frame."""
 
     powers: Mapping[str, int] = field(default_factory=dict)
     """The power of ten by which an argument becomes SI units in RDF, by its field."""
@@ -207,7 +186,7 @@ class Observed(Fact):
     def subject(self) -> str:
         """The body that the fact is about; empty where it is about none."""
         about = self.declaration.about
-        return "" if about is None else str(getattr(self, about))
+        return str(getattr(self, about)) if about else ""
 
     def ends(self) -> tuple[int, ...]:
         """The frames that the fact itself states: an instant, or the first and the last frame."""
@@ -237,17 +216,16 @@ class Observed(Fact):
         return replace(cast(Any, self), first=first, last=last)
 
 
+_BRACES = re.compile(r"\{(\w+)\}")
+
+
 @cache
 def _ends_of(kind: type[Observed]) -> Callable[[Observed], tuple[int, ...]]:
     """What reads the frames that facts of a kind state; they are read very often."""
-    span = kind.declaration.span
-    names = span.value if isinstance(span, Span) else ("first",)
+    names = kind.declaration.span.value if isinstance(kind.declaration.span, Span) else ("first",)
     if len(names) > 1:
         return attrgetter(*names)
     return lambda fact: tuple(getattr(fact, name) for name in names)
-
-
-_BRACES = re.compile(r"\{(\w+)\}")
 
 
 @cache
@@ -256,49 +234,45 @@ def _naming_fields(kind: Any) -> tuple[str, ...]:
     return tuple(each for each in get_annotations(kind) if each != "last")
 
 
-def _check(name: str, declared: Declaration, fields: dict[str, type]) -> None:
-    span = declared.span
-    braces = _BRACES.findall(declared.stretch)
-    frames = span.value if isinstance(span, Span) else _naming_fields(cast(Any, span))
-    about = () if declared.about is None else (declared.about,)
-    needed = (*about, *frames, *declared.others, *braces)
-    missing = [each for each in needed if each not in fields]
-    if missing:
-        raise FactError(f"{name} declares the fields {missing}, but has {list(fields)}")
-    if declared.negated and span is not Span.INTERVAL:
-        raise FactError(f"{name} cannot flicker: it is no interval")
-    named = [each for each, of in fields.items() if of is str]
-    terms = len(named) + 1 if declared.sampled else len(fields)
-    if len(declared.rdf) != terms + 1:
-        raise FactError(f"{name} declares {declared.rdf}: expected a class and {terms} properties")
-    if strange := [each for each in declared.powers if fields.get(each) is not int]:
-        raise FactError(f"{name} declares powers of {strange}, which are no whole numbers of it")
-
-
 _Kind = TypeVar("_Kind", bound=Observed)
 _defined: list[type[Observed]] = []
 
 
 @dataclass_transform(frozen_default=True, order_default=True)
-def fact_kind(predicate: str, **declared: Any) -> Callable[[type[_Kind]], type[_Kind]]:
+def fact_kind(
+    predicate: str, terms: str, span: "Span | type[Observed] | None" = None, **declared: Any
+) -> Callable[[type[_Kind]], type[_Kind]]:
     """Make a class a kind of fact: a frozen dataclass with a predicate and a declaration.
 
-    ``predicate``: its name in the rules. ``**declared``: the fields of its ``Declaration``.
+    It is about the body that its first field names, if that is a text, and holds when its fields
+    ``frame``, or ``first`` and ``last``, state, unless another span is declared.
+    ``predicate``: its name in the rules. ``**declared``: other fields of its ``Declaration``.
 
     Raises:
         FactError: The declaration does not fit the fields.
     """
 
     def define(cls: type[_Kind]) -> type[_Kind]:
-        cls.predicate, cls.declaration = predicate, Declaration(**declared)
-        _check(cls.__name__, cls.declaration, get_annotations(cls))
-        _defined.append(made := dataclass(frozen=True, slots=True, order=True)(cls))
-        return made
+        has = get_annotations(cls)
+        first = next(iter(has), "")
+        own = next(each for each in reversed(Span) if set(each.value) <= set(has))
+        made = Declaration(terms, first if has.get(first) is str else "", span or own, **declared)
+        names = _naming_fields(cast(Any, made.span)) if isinstance(made.span, type) else ()
+        missing = {*names, *made.others, *_BRACES.findall(made.stretch)} - set(has)
+        missing |= {each for each in made.powers if has.get(each) is not int}
+        if missing:
+            raise FactError(f"{cls.__name__} declares the fields {missing}, but has {list(has)}")
+        count = 1 + (list(has.values()).count(str) + 1 if made.sampled else len(has))
+        if len(made.rdf) != count:
+            raise FactError(f"{cls.__name__} declares {made.rdf}: expected {count} terms")
+        cls.predicate, cls.declaration = predicate, made
+        _defined.append(kind := dataclass(frozen=True, slots=True, order=True)(cls))
+        return kind
 
     return define
 
 
-@fact_kind("frames", span=ALWAYS, terms="FramesFact firstFrame lastFrame")
+@fact_kind("frames", "FramesFact firstFrame lastFrame", span=Span.ALWAYS)
 class Frames(Observed):
     """The capture's first and last frame."""
 
@@ -306,14 +280,14 @@ class Frames(Observed):
     last: int
 
 
-@fact_kind("rate_mhz", span=ALWAYS, terms="RateFact rateMhz")
+@fact_kind("rate_mhz", "RateFact rateMhz")
 class RateMhz(Observed):
     """Frames in a thousand seconds."""
 
     rate: int
 
 
-@fact_kind("link", about="ee", span=ALWAYS, terms="LinkFact body effectorType side")
+@fact_kind("link", "LinkFact body effectorType side")
 class Link(Observed):
     """An end-effector that acts, its general type and its side."""
 
@@ -322,7 +296,7 @@ class Link(Observed):
     side: str
 
 
-@fact_kind("tag", about="object", span=ALWAYS, terms="TagFact body tagName")
+@fact_kind("tag", "TagFact body tagName")
 class Tag(Observed):
     """An object or body part watched for contact: self, fixed or mobile."""
 
@@ -330,7 +304,7 @@ class Tag(Observed):
     type: str
 
 
-@fact_kind("of_agent", about="body", span=ALWAYS, terms="Belonging body agent")
+@fact_kind("of_agent", "Belonging body agent")
 class OfAgent(Observed):
     """Whose an end-effector or a body part is; stated where several agents perform."""
 
@@ -338,7 +312,7 @@ class OfAgent(Observed):
     agent: str
 
 
-@fact_kind("zero_crossing", about="ee", span=INSTANT, terms="ZeroCrossings body samples")
+@fact_kind("zero_crossing", "ZeroCrossings body samples")
 class ZeroCrossing(Observed):
     """The end-effector's acceleration crosses zero at this frame (thesis 3.2.1)."""
 
@@ -346,7 +320,7 @@ class ZeroCrossing(Observed):
     frame: int
 
 
-@fact_kind("pause", about="ee", span=INSTANT, border=True, terms="Pause body frame")
+@fact_kind("pause", "Pause body frame", border=True)
 class Pause(Observed):
     """A zero crossing at which the end-effector is slow: it starts, stops or turns."""
 
@@ -356,12 +330,10 @@ class Pause(Observed):
 
 @fact_kind(
     "touching",
-    about="body",
-    span=INTERVAL,
+    "Touching body other firstFrame lastFrame",
     border=True,
     others=("other",),
     negated="apart",
-    terms="Touching body other firstFrame lastFrame",
 )
 class Touching(Observed):
     """Two bodies touch from the first to the last frame; an end-effector stands first."""
@@ -372,13 +344,7 @@ class Touching(Observed):
     last: int
 
 
-@fact_kind(
-    "gap",
-    about="body",
-    span=Touching,
-    terms="Gap body other firstFrame gap",
-    powers={"micrometres": -6},
-)
+@fact_kind("gap", "Gap body other firstFrame gap", span=Touching, powers={"micrometres": -6})
 class Gap(Observed):
     """How far two bodies are apart when they begin to touch [micrometres]; zero where they cut."""
 
@@ -388,14 +354,7 @@ class Gap(Observed):
     micrometres: int
 
 
-@fact_kind(
-    "moving",
-    about="object",
-    span=INTERVAL,
-    border=True,
-    negated="still",
-    terms="Moving body firstFrame lastFrame",
-)
+@fact_kind("moving", "Moving body firstFrame lastFrame", border=True, negated="still")
 class Moving(Observed):
     """An object is away from each place where it rests, from the first to the last frame."""
 
@@ -406,12 +365,10 @@ class Moving(Observed):
 
 @fact_kind(
     "looking_at",
-    about="sensor",
-    span=INTERVAL,
+    "LookingAt body seen firstFrame lastFrame",
     border=True,
     stretch="looks",
     others=("object",),
-    terms="LookingAt body seen firstFrame lastFrame",
 )
 class LookingAt(Observed):
     """The line of sight of a sensor that attends, or of a head that acts, meets it first."""
@@ -422,12 +379,12 @@ class LookingAt(Observed):
     last: int
 
 
-@fact_kind("force_transfer", span=ALWAYS, terms="ForceTransfer")
+@fact_kind("force_transfer", "ForceTransfer")
 class ForceTransfer(Observed):
     """The user says that force passes to objects in this trial (thesis 4.4.1)."""
 
 
-@fact_kind("intended", span=ALWAYS, terms="Intended rank actionName objectName goalName purpose")
+@fact_kind("intended", "Intended rank actionName objectName goalName purpose")
 class Intended(Observed):
     """The user's purpose for steps of an action with an object and a goal; "any" fits all."""
 
@@ -438,7 +395,7 @@ class Intended(Observed):
     purpose: str
 
 
-@fact_kind("solid", about="object", span=ALWAYS, terms="SolidObject body")
+@fact_kind("solid", "SolidObject body")
 class Solid(Observed):
     """Neither an object's surface nor its kind leaves a hollow in it: nothing can be in it.
 
@@ -448,7 +405,7 @@ class Solid(Observed):
     object: str
 
 
-@fact_kind("shapeless", about="object", span=ALWAYS, terms="ShapelessObject body")
+@fact_kind("shapeless", "ShapelessObject body")
 class Shapeless(Observed):
     """An object's shape is not known, so what is in it, or what it is in, is not known either.
 
@@ -458,13 +415,7 @@ class Shapeless(Observed):
     object: str
 
 
-@fact_kind(
-    "displaced",
-    about="object",
-    span=INTERVAL,
-    border=True,
-    terms="Displacement body firstFrame lastFrame",
-)
+@fact_kind("displaced", "Displacement body firstFrame lastFrame", border=True)
 class Displaced(Observed):
     """An object moves, from when it truly set off until it truly stopped.
 
@@ -478,13 +429,7 @@ class Displaced(Observed):
 
 
 @fact_kind(
-    "resting",
-    about="ee",
-    span=INTERVAL,
-    border=True,
-    stretch="resting",
-    negated="going",
-    terms="Resting body firstFrame lastFrame",
+    "resting", "Resting body firstFrame lastFrame", border=True, stretch="resting", negated="going"
 )
 class Resting(Observed):
     """An end-effector is at a place where it rests, from the first to the last frame."""
@@ -494,7 +439,7 @@ class Resting(Observed):
     last: int
 
 
-@fact_kind("place", about="body", span=INSTANT, terms="Places body samples")
+@fact_kind("place", "Places body samples")
 class Place(Observed):
     """Where the middle of a body is at a frame [millimetres]."""
 
@@ -505,7 +450,7 @@ class Place(Observed):
     z: int
 
 
-@fact_kind("from_trunk", about="body", span=INSTANT, terms="TrunkPlaces body samples")
+@fact_kind("from_trunk", "TrunkPlaces body samples")
 class TrunkPlace(Observed):
     """Where the middle of an end-effector is at a frame, from its agent's trunk [millimetres].
 
@@ -519,7 +464,7 @@ class TrunkPlace(Observed):
     z: int
 
 
-@fact_kind("travelled", about="body", span=INSTANT, terms="Ways body samples")
+@fact_kind("travelled", "Ways body samples")
 class Travelled(Observed):
     """How far a body has gone along its path, and turned, since the capture began.
 
@@ -532,7 +477,7 @@ class Travelled(Observed):
     turn: int
 
 
-@fact_kind("posture", about="body", span=INSTANT, terms="Postures body samples")
+@fact_kind("posture", "Postures body samples")
 class Posture(Observed):
     """How a body stands at a frame [milliradians].
 
@@ -546,7 +491,7 @@ class Posture(Observed):
     spin: int
 
 
-@fact_kind("apart", about="body", span=INSTANT, terms="Distances body other samples")
+@fact_kind("apart", "Distances body other samples")
 class Distance(Observed):
     """How far the middles of two bodies are apart at a frame [millimetres]."""
 
@@ -556,7 +501,7 @@ class Distance(Observed):
     millimetres: int
 
 
-@fact_kind("wound", about="body", span=INSTANT, terms="SweptAzimuths body other samples")
+@fact_kind("wound", "SweptAzimuths body other samples")
 class SweptAzimuth(Observed):
     """The angle by which a body has gone about another, seen from above [milliradians]."""
 
@@ -568,11 +513,9 @@ class SweptAzimuth(Observed):
 
 @fact_kind(
     "phase",
-    about="object",
-    span=INTERVAL,
+    "Phase body phaseKind firstFrame lastFrame",
     border=frozenset({"goes_level"}),
     stretch="goes_{kind}",
-    terms="Phase body phaseKind firstFrame lastFrame",
 )
 class Phase(Observed):
     """A part of an object's motion: rising, level or sinking, by its path; turning, or still."""
@@ -583,7 +526,7 @@ class Phase(Observed):
     last: int
 
 
-@fact_kind("guided", about="object", span=ALWAYS, terms="GuidedObject body guideKind other")
+@fact_kind("guided", "GuidedObject body guideKind other")
 class Guided(Observed):
     """An object moves on one hinge or one rail of a fixed one, throughout the recording.
 
@@ -595,7 +538,7 @@ class Guided(Observed):
     base: str
 
 
-@fact_kind("opening", about="object", span=INSTANT, terms="Openings body samples")
+@fact_kind("opening", "Openings body samples")
 class Opening(Observed):
     """How far an object on a guide is from its closed place at a frame.
 
@@ -607,14 +550,7 @@ class Opening(Observed):
     amount: int
 
 
-@fact_kind(
-    "reverses",
-    about="object",
-    span=INSTANT,
-    border=True,
-    stretch="reverses",
-    terms="Reversal body frame",
-)
+@fact_kind("reverses", "Reversal body frame", border=True, stretch="reverses")
 class Reverses(Observed):
     """A moving object that rose begins to sink, or one that sank after that to rise again.
 
@@ -626,14 +562,7 @@ class Reverses(Observed):
     frame: int
 
 
-@fact_kind(
-    "draws_back",
-    about="object",
-    span=INSTANT,
-    border=True,
-    stretch="draws_back",
-    terms="DrawingBack body frame",
-)
+@fact_kind("draws_back", "DrawingBack body frame", border=True, stretch="draws_back")
 class DrawsBack(Observed):
     """A moving object turns back on a level path, after a real way and before another one."""
 
@@ -641,14 +570,7 @@ class DrawsBack(Observed):
     frame: int
 
 
-@fact_kind(
-    "swings",
-    about="body",
-    span=INTERVAL,
-    border=True,
-    stretch="swings",
-    terms="Swinging body firstFrame lastFrame",
-)
+@fact_kind("swings", "Swinging body firstFrame lastFrame", border=True, stretch="swings")
 class Swings(Observed):
     """A body moves to and fro, again and again, from the first to the last frame."""
 
@@ -658,12 +580,7 @@ class Swings(Observed):
 
 
 @fact_kind(
-    "lengthwise",
-    about="body",
-    span=INTERVAL,
-    border=True,
-    stretch="lengthwise",
-    terms="LengthwiseSwinging body firstFrame lastFrame",
+    "lengthwise", "LengthwiseSwinging body firstFrame lastFrame", border=True, stretch="lengthwise"
 )
 class Lengthwise(Observed):
     """A long, thin body moves to and fro along its own length, from the first to the last frame."""
@@ -673,14 +590,7 @@ class Lengthwise(Observed):
     last: int
 
 
-@fact_kind(
-    "leans",
-    about="object",
-    span=INTERVAL,
-    border=True,
-    stretch="leans",
-    terms="Leaning body firstFrame lastFrame",
-)
+@fact_kind("leans", "Leaning body firstFrame lastFrame", border=True, stretch="leans")
 class Leans(Observed):
     """An object's upright axis is far from the vertical, from the first to the last frame."""
 
@@ -689,14 +599,7 @@ class Leans(Observed):
     last: int
 
 
-@fact_kind(
-    "flies",
-    about="object",
-    span=INTERVAL,
-    border=True,
-    stretch="flies",
-    terms="Flying body firstFrame lastFrame",
-)
+@fact_kind("flies", "Flying body firstFrame lastFrame", border=True, stretch="flies")
 class Flies(Observed):
     """An object falls freely, from the first to the last frame."""
 
@@ -705,13 +608,7 @@ class Flies(Observed):
     last: int
 
 
-@fact_kind(
-    "rolls",
-    about="object",
-    span=INTERVAL,
-    stretch="rolls",
-    terms="Rolling body firstFrame lastFrame",
-)
+@fact_kind("rolls", "Rolling body firstFrame lastFrame", stretch="rolls")
 class Rolls(Observed):
     """An object goes and turns about a level axis without slipping below its middle."""
 
@@ -720,7 +617,7 @@ class Rolls(Observed):
     last: int
 
 
-@fact_kind("travels", about="object", span=INTERVAL, terms="Travelling body firstFrame lastFrame")
+@fact_kind("travels", "Travelling body firstFrame lastFrame")
 class Travels(Observed):
     """An object covers more way than a floor of motion in a moment, throughout."""
 
@@ -730,11 +627,7 @@ class Travels(Observed):
 
 
 @fact_kind(
-    "upward",
-    about="body",
-    span=Touching,
-    terms="ContactNormal body other firstFrame upward",
-    powers={"permille": -3},
+    "upward", "ContactNormal body other firstFrame upward", span=Touching, powers={"permille": -3}
 )
 class ContactNormal(Observed):
     """How far the normal of a contact points up, from the other to the body [1/1000].
@@ -750,9 +643,8 @@ class ContactNormal(Observed):
 
 @fact_kind(
     "presses",
-    about="body",
+    "PressDirection body other firstFrame pressX pressY",
     span=Touching,
-    terms="PressDirection body other firstFrame pressX pressY",
     powers={"x": -3, "y": -3},
 )
 class PressDirection(Observed):
@@ -769,11 +661,7 @@ class PressDirection(Observed):
 
 
 @fact_kind(
-    "sighted",
-    about="body",
-    span=Touching,
-    terms="SightNormal body other firstFrame sightward",
-    powers={"permille": -3},
+    "sighted", "SightNormal body other firstFrame sightward", span=Touching, powers={"permille": -3}
 )
 class SightNormal(Observed):
     """How far the normal of a contact with a head points where the head looks [1/1000].
@@ -787,7 +675,7 @@ class SightNormal(Observed):
     permille: int
 
 
-@fact_kind("rides", about="body", span=Touching, terms="Riding body other firstFrame")
+@fact_kind("rides", "Riding body other firstFrame", span=Touching)
 class Rides(Observed):
     """A body is borne by another one, in or on it, and goes along when that one moves.
 
@@ -801,9 +689,8 @@ class Rides(Observed):
 
 @fact_kind(
     "closing",
-    about="body",
+    "ClosingSpeed body other firstFrame contactSpeed",
     span=Touching,
-    terms="ClosingSpeed body other firstFrame contactSpeed",
     powers={"speed": -3},
 )
 class ClosingSpeed(Observed):
@@ -817,9 +704,8 @@ class ClosingSpeed(Observed):
 
 @fact_kind(
     "released",
-    about="body",
+    "ReleaseSpeed body other firstFrame contactSpeed",
     span=Touching,
-    terms="ReleaseSpeed body other firstFrame contactSpeed",
     powers={"speed": -3},
 )
 class ReleaseSpeed(Observed):
@@ -834,9 +720,7 @@ class ReleaseSpeed(Observed):
     speed: int
 
 
-@fact_kind(
-    "seated", about="body", span=INTERVAL, border=True, terms="Seat body other firstFrame lastFrame"
-)
+@fact_kind("seated", "Seat body other firstFrame lastFrame", border=True)
 class Seated(Observed):
     """A body is down on another one that bears it: in a contact, less its coming and going."""
 
@@ -848,11 +732,9 @@ class Seated(Observed):
 
 @fact_kind(
     "bears",
-    about="foot",
-    span=INTERVAL,
+    "WeightBearing body weightShare firstFrame lastFrame",
     border=frozenset({"bears_whole", "bears_none"}),
     stretch="bears_{share}",
-    terms="WeightBearing body weightShare firstFrame lastFrame",
 )
 class Bears(Observed):
     """A foot that is down bears the whole weight of the body, part of it, or none."""
@@ -865,11 +747,9 @@ class Bears(Observed):
 
 @fact_kind(
     "lies",
-    about="body",
-    span=INTERVAL,
+    "Arrangement body arrangement other firstFrame lastFrame",
     stretch="{how}",
     others=("other",),
-    terms="Arrangement body arrangement other firstFrame lastFrame",
 )
 class Lies(Observed):
     """How a body lies to another.
@@ -887,11 +767,9 @@ class Lies(Observed):
 
 @fact_kind(
     "between",
-    about="body",
-    span=INTERVAL,
+    "PlaceBetween body one other firstFrame lastFrame",
     stretch="between",
     others=("one", "other"),
-    terms="PlaceBetween body one other firstFrame lastFrame",
 )
 class Between(Observed):
     """A body's middle is between two others, from the first to the last frame."""
@@ -905,11 +783,10 @@ class Between(Observed):
 
 @fact_kind(
     "passage",
-    about="body",
+    "Passage body arrangement other firstFrame sides",
     span=Lies,
     stretch="{how}_{sides}",
     others=("other",),
-    terms="Passage body arrangement other firstFrame sides",
 )
 class Passage(Observed):
     """A stretch of being inside or above another ends at another side than it began.
@@ -924,13 +801,7 @@ class Passage(Observed):
     sides: str
 
 
-@fact_kind(
-    "moves_with",
-    about="object",
-    span=INTERVAL,
-    terms="CoMotion body other firstFrame lastFrame gap",
-    powers={"gap": -3},
-)
+@fact_kind("moves_with", "CoMotion body other firstFrame lastFrame gap", powers={"gap": -3})
 class MovesWith(Observed):
     """A travelling object is steady in another body's frame, so far from touching it [mm].
 
@@ -948,12 +819,7 @@ MEASURED: tuple[type[Observed], ...] = tuple(_defined)
 """Every kind of fact that extractors state, in the order in which they are written."""
 
 
-@fact_kind(
-    "doubted",
-    about="body",
-    span=INTERVAL,
-    terms="FlickerCorrection body other firstFrame lastFrame takenFor",
-)
+@fact_kind("doubted", "FlickerCorrection body other firstFrame lastFrame takenFor")
 class FlickerCorrection(Observed):
     """A stretch that the rules do not take as it was measured: it is a flicker.
 
@@ -969,9 +835,7 @@ class FlickerCorrection(Observed):
     taken: str
 
 
-@fact_kind(
-    "moved_by", about="object", span=INTERVAL, terms="MovedBy body mover how firstFrame lastFrame"
-)
+@fact_kind("moved_by", "MovedBy body mover how firstFrame lastFrame")
 class MovedBy(Observed):
     """What moves an object through a part of its motion, as the rules of movers tell.
 
@@ -1011,9 +875,7 @@ def read_fact(text: str) -> Observed:
 Interval = tuple[int, int]
 """First and last frame."""
 
-_NAMED = frozenset(
-    kind.declaration.span for kind in ALL_FACT_KINDS if not isinstance(kind.declaration.span, Span)
-)
+_NAMED = {kind.declaration.span for kind in ALL_FACT_KINDS} - set(Span)
 """The kinds of intervals that other facts name by their first frames."""
 
 
@@ -1023,7 +885,7 @@ class FactIntervals:
     def __init__(self, facts: Iterable[Fact]) -> None:
         """Index the intervals that other facts name."""
         self._named: dict[tuple[object, ...], Interval] = {
-            fact.name(type(fact)): _closed(fact.ends())
+            fact.name(type(fact)): (fact.ends()[0], fact.ends()[-1])
             for fact in facts
             if isinstance(fact, Observed) and type(fact) in _NAMED
         }
@@ -1033,9 +895,5 @@ class FactIntervals:
         if not isinstance(fact, Observed) or fact.declaration.span is Span.ALWAYS:
             return None
         if isinstance(fact.declaration.span, Span):
-            return _closed(fact.ends())
+            return fact.ends()[0], fact.ends()[-1]
         return self._named.get(fact.name(fact.declaration.span))
-
-
-def _closed(frames: tuple[int, ...]) -> Interval:
-    return frames[0], frames[-1]
