@@ -6,31 +6,24 @@ from typing import Any
 
 from capar.model.errors import CaparError, UnknownNameError
 
-ORDER_CONTRADICTED = (
-    "{0} and {1} turn as one, but with quaternions read as {declared} {1} strays by "
-    "{stray_m:g} m in the frame of {0}, as in {stretches} stretches of a second; as {order} it "
-    'does not: state order = "{order}"'
-)
 
-FALL_RATE = (
-    "{0!r} falls with {acceleration_mps2:g} m/s2 from {start_s:.2f} to {end_s:.2f} s, not with "
-    "9.81: frames came at {rate_hz:g} a second, not at {declared_hz:g}; state rate_hz = "
-    "{rate_hz:g} for its file, or correct its time stamps"
-)
-
-SHAPE_SIZE = (
-    "the shape of {0!r}, {shape}, is {size_m:g} m long, and {0!r} is moved by hand: state "
-    'unit = "{unit}" in its shape'
-)
-
-SIDES_EXCHANGED = (
-    "{0!r} is on the left of {1!r} as {2!r} looks, in {share:.0%} of what shows their sides: "
-    'exchange the names, correct the gaze of {2!r}, or state handedness = "left" if the file '
-    "has a left-handed world (the other way round if it is stated)"
-)
+def _long_gap(each: "Notice") -> str:
+    """Of one gap as it was read, or of all of a body's, with what follows from them."""
+    (body,), values = each.bodies, dict(each.values)
+    if "times" not in values:
+        span = "throughout" if each.start_s is None else f"from {each.start_s:.2f} s"
+        return f"{body} is lost {span}" + ("" if each.end_s is None else f" to {each.end_s:.2f} s")
+    if each.start_s is None:
+        return f"{body!r} was lost throughout; no contact of it is known"
+    often = {1: "", 2: "twice, for longest "}.get(
+        int(values["times"]), f"{values['times']} times, for longest "
+    )
+    touched = "what touched it before and after is assumed to have touched it then"
+    follows = "it is held to stay" if values["fixed"] else touched
+    return f"{body!r} was lost {often}from {each.start_s:.2f} to {each.end_s:.2f} s; {follows}"
 
 
-def up_contradicted(each: "Notice") -> str:
+def _up_contradicted(each: "Notice") -> str:
     """Gravity or rests that the declared upward axis does not fit."""
     bodies, fields = each.bodies, each.fields
     if fields["shown"] == "rest":
@@ -46,43 +39,11 @@ def up_contradicted(each: "Notice") -> str:
     return f'{found}: {remedy}, which was read with "{fields["declared"]}"'
 
 
-def unit_contradicted(each: "Notice") -> str:
-    """Lengths that no person has, and falls by another acceleration than gravity's."""
-    bodies, fields = each.bodies, each.fields
-    if fields["shown"] == "person":
-        first, second = bodies
-        found = f"{first!r} and {second!r} of one person are {fields['size_m']:g} m apart at most"
-    elif fields["shown"] == "speed":
-        found = f"{bodies[0]!r} is faster than {fields['speed_mps']:g} m/s for a tenth of the time"
-    else:
-        found = (
-            f"{bodies[0]!r} falls with {fields['acceleration_mps2']:g} m/s2 from "
-            f"{fields['start_s']:.2f} to {fields['end_s']:.2f} s, not with 9.81"
-        )
-    remedy = f'state unit = "{fields["unit"]}" for its file'
-    return f"{found}: {remedy}, which was read in {fields['declared']}"
-
-
-WHY_UNMOVED: Mapping[str, str] = {
-    "nobody": "nothing that is recorded was near and went with it: is a sensor missing, is the "
-    "unit of a file wrong, or was it tracked wrongly?",
-    "beyond_reach": "something went with it beyond reach: is a mount, a distance or a unit wrong?",
-    "left_behind": "what touched it rested meanwhile: is a distance of contact too large, or a "
-    "sensor missing?",
-}
-"""What would explain that nothing moves an object, by what the rules found."""
-
-
-def no_mover(each: "Notice") -> str:
-    """Motion that nothing explains."""
-    bodies, fields = each.bodies, each.fields
-    share = 100.0 * float(fields["share"])
-    often = "" if fields["times"] == 1 else f", the longest of {fields['times']} times"
-    return (
-        f"nothing moves {bodies[0]!r} in {share:.1f} % of its motion, from {fields['start_s']:.2f} "
-        f"to {fields['end_s']:.2f} s{often}; {WHY_UNMOVED[str(fields['why'])]}"
-    )
-
+UNIT = ': state unit = "{unit}" for its file, which was read in {declared}'
+UNMOVED = (
+    "nothing moves {0!r} in {share:.1%} of its motion, for longest from {start_s:.2f} to "
+    "{end_s:.2f} s; "
+)
 
 Value = str | int | float | bool
 
@@ -132,10 +93,9 @@ class Notice:
     @property
     def message(self) -> str:
         """The notice in words."""
-        text = KINDS[self.code].text
-        if callable(text):
-            return text(self)
-        return text.format(*self.bodies, **self.fields)
+        kind = KINDS[self.code]
+        text = kind.text[str(self[kind.by])] if isinstance(kind.text, Mapping) else kind.text
+        return text.format(*self.bodies, **self.fields) if isinstance(text, str) else text(self)
 
     @property
     def fields(self) -> dict[str, Any]:
@@ -175,77 +135,35 @@ def read_notice(document: Mapping[str, Any]) -> Notice:
     Raises:
         CaparError: It has other fields, or a field of another type.
     """
-    known = {"code", "bodies", "start_s", "end_s", "values", "message"}
+    kinds: dict[str, tuple[Any, str]] = {
+        "code": (str, "a text"),
+        "bodies": (list, "a list of names"),
+        "values": (dict, "names with numbers or texts"),
+        "start_s": (int | float | None, "seconds"),
+        "end_s": (int | float | None, "seconds"),
+        "message": (str | None, "a text"),
+    }
     for name in document:
-        if name not in known:
-            raise UnknownNameError("field of a notice", name, known)
-    code, bodies = document.get("code"), document.get("bodies")
-    values, times = document.get("values"), (document.get("start_s"), document.get("end_s"))
-    if not isinstance(code, str):
-        raise CaparError(f"code: expected a text, found {code!r}")
-    if not isinstance(bodies, list) or not all(isinstance(body, str) for body in bodies):
-        raise CaparError(f"bodies: expected a list of names, found {bodies!r}")
-    if not isinstance(values, dict) or not all(map(_is_value, values.values())):
-        raise CaparError(f"values: expected names with numbers or texts, found {values!r}")
-    if not all(
-        each is None or (isinstance(each, int | float) and (not isinstance(each, bool)))
-        for each in times
-    ):
-        raise CaparError(f"start_s, end_s: expected seconds, found {times!r}")
-    return notice(code, *bodies, start_s=times[0], end_s=times[1], **values)
-
-
-def _is_value(value: object) -> bool:
-    return isinstance(value, str | int | float)
-
-
-def _long_gap(each: Notice) -> str:
-    """Of one gap as it was read, or of all of a body's, with what follows from them."""
-    (body,), values = each.bodies, dict(each.values)
-    if "times" not in values:
-        span = "throughout" if each.start_s is None else f"from {each.start_s:.2f} s"
-        return f"{body} is lost {span}" + ("" if each.end_s is None else f" to {each.end_s:.2f} s")
-    if each.start_s is None:
-        return f"{body!r} was lost throughout; no contact of it is known"
-    times = int(values["times"])
-    often = "" if times == 1 else f"{'twice' if times == 2 else f'{times} times'}, for longest "
-    follows = "it is held to stay" if values["fixed"] else (
-        "what touched it before and after is assumed to have touched it then"
-    )  # fmt: skip
-    span = f"{each.start_s:.2f} to {each.end_s:.2f} s"
-    return f"{body!r} was lost {often}from {span}; {follows}"
-
-
-EVIDENCE: Mapping[str, str] = {
-    "co-motion": "{frames} frames in which one travels and is steady in the other's frame",
-    "settling": "{frames} frames in which one rests or dwells by the other",
-    "rest": "{frames} frames in which one rests on the other and nobody holds it",
-}
-"""What an estimated distance rests on, by how it was found."""
-
-
-def _touch_estimated(each: Notice) -> str:
-    first, second = each.bodies
-    evidence = EVIDENCE[str(each["found"])].format(frames=each["frames"])
-    return (
-        f"{first!r} and {second!r} count as touching within {1e3 * float(each['touch_m']):.0f} mm "
-        f"of how they were in {evidence}"
-    )
-
-
-def _flicker(each: Notice) -> str:
-    return (
-        f"{' with '.join(each.bodies)}: {each['length_s']:.2f} s at {each.start_s:.2f} s taken for "
-        f"{each['taken']}, not as measured: so the fewest changes explain it"
-    )
+        if name not in kinds:
+            raise UnknownNameError("field of a notice", name, kinds)
+    for name, (kind, expected) in kinds.items():
+        if not isinstance(found := document.get(name), kind) or isinstance(found, bool):
+            raise CaparError(f"{name}: expected {expected}, found {found!r}")
+    parts: dict[str, Any] = {name: document.get(name) for name in ("start_s", "end_s")}
+    if not all(isinstance(body, str) for body in document["bodies"]):
+        raise CaparError(f"bodies: expected a list of names, found {document['bodies']!r}")
+    if not all(isinstance(value, str | int | float) for value in document["values"].values()):
+        raise CaparError(f"values: expected numbers or texts, found {document['values']!r}")
+    return notice(document["code"], *document["bodies"], **parts, **document["values"])
 
 
 @dataclass(frozen=True, slots=True)
 class NoticeKind:
     """What is said of notices of a code."""
 
-    text: str | Callable[[Notice], str]
-    """A template over the bodies by number and the other fields by name, or what makes the text."""
+    text: str | Mapping[str, str] | Callable[[Notice], str]
+    """A template over the bodies by number and the other fields by name, one for each value of the
+    field ``by``, or what makes the text."""
 
     several: str = ""
     """What many of it are called; empty where it does not bear on the truth of what is told.
@@ -258,6 +176,8 @@ class NoticeKind:
 
     of_pair: bool = False
     """Whether it bears on nothing but what is told of its two bodies together."""
+
+    by: str = ""
 
 
 KINDS: Mapping[str, NoticeKind] = {
@@ -292,7 +212,8 @@ KINDS: Mapping[str, NoticeKind] = {
         of_pair=True,
     ),
     "touch-estimated": NoticeKind(
-        _touch_estimated,
+        "{0!r} and {1!r} count as touching within {touch_mm:.0f} mm of how they were in {frames} "
+        "frames of {found}",
         "pairs that touch by a distance estimated from the recording",
         of_pair=True,
     ),
@@ -309,9 +230,17 @@ KINDS: Mapping[str, NoticeKind] = {
         fault=True,
     ),
     "no-mover": NoticeKind(
-        no_mover,
+        {
+            "nobody": UNMOVED + "nothing that is recorded was near and went with it: is a sensor "
+            "missing, is the unit of a file wrong, or was it tracked wrongly?",
+            "beyond_reach": UNMOVED + "something went with it beyond reach: is a mount, a distance "
+            "or a unit wrong?",
+            "left_behind": UNMOVED + "what touched it rested meanwhile: is a distance of contact "
+            "too large, or a sensor missing?",
+        },
         "objects that move and nothing moves them",
         fault=True,
+        by="why",
     ),
     "contact-gap": NoticeKind(
         "{0!r} moves, and no contact of {1!r} with it was found from {start_s:.2f} to "
@@ -319,22 +248,45 @@ KINDS: Mapping[str, NoticeKind] = {
         "times without contact in which something was moved",
     ),
     "up-contradicted": NoticeKind(
-        up_contradicted,
-        "falls and rests against the upward axis",
-        fault=True,
+        _up_contradicted, "falls and rests against the upward axis", fault=True
     ),
     "unit-contradicted": NoticeKind(
-        unit_contradicted,
+        {
+            "person": "{0!r} and {1!r} of one person are {size_m:g} m apart at most" + UNIT,
+            "speed": "{0!r} is faster than {speed_mps:g} m/s for a tenth of the time" + UNIT,
+            "fall": "{0!r} falls with {acceleration_mps2:g} m/s2 from {start_s:.2f} to "
+            "{end_s:.2f} s, not with 9.81" + UNIT,
+        },
         "sizes that no person has",
         fault=True,
+        by="shown",
     ),
     "order-contradicted": NoticeKind(
-        ORDER_CONTRADICTED, "quaternions in another order than declared", fault=True
+        "{0} and {1} turn as one, but with quaternions read as {declared} {1} strays by "
+        "{stray_m:g} m in the frame of {0}, as in {stretches} stretches of a second; as {order} it "
+        'does not: state order = "{order}"',
+        "quaternions in another order than declared",
+        fault=True,
     ),
-    "fall-rate": NoticeKind(FALL_RATE, "falls at another rate", fault=True),
-    "shape-size": NoticeKind(SHAPE_SIZE, "shapes of a size that nobody handles", fault=True),
+    "fall-rate": NoticeKind(
+        "{0!r} falls with {acceleration_mps2:g} m/s2 from {start_s:.2f} to {end_s:.2f} s, not with "
+        "9.81: frames came at {rate_hz:g} a second, not at {declared_hz:g}; state rate_hz = "
+        "{rate_hz:g} for its file, or correct its time stamps",
+        "falls at another rate",
+        fault=True,
+    ),
+    "shape-size": NoticeKind(
+        "the shape of {0!r}, {shape}, is {size_m:g} m long, and {0!r} is moved by hand: state "
+        'unit = "{unit}" in its shape',
+        "shapes of a size that nobody handles",
+        fault=True,
+    ),
     "sides-exchanged": NoticeKind(
-        SIDES_EXCHANGED, "pairs of right and left that are exchanged", fault=True
+        "{0!r} is on the left of {1!r} as {2!r} looks, in {share:.0%} of what shows their sides: "
+        'exchange the names, correct the gaze of {2!r}, or state handedness = "left" if the file '
+        "has a left-handed world (the other way round if it is stated)",
+        "pairs of right and left that are exchanged",
+        fault=True,
     ),
     "nothing-acts": NoticeKind(
         'no sensor acts, so no action is told; state role = "acts" for the hands and feet that do'
@@ -343,7 +295,10 @@ KINDS: Mapping[str, NoticeKind] = {
         "bodies count as touching within {tolerance_mm:.1f} mm (stated by the capture: {stated})"
     ),
     "doubled-stamps": NoticeKind("{samples} samples repeat a stamp; the last of each is kept"),
-    "flicker": NoticeKind(_flicker),
+    "flicker": NoticeKind(
+        "{all}: {length_s:.2f} s at {start_s:.2f} s taken for {taken}, not as measured: so the "
+        "fewest changes explain it"
+    ),
     "no-unit": NoticeKind("the file states no unit; lengths are shown as if it were metres"),
     "offset-and-position": NoticeKind(
         "{all}: OFFSET and position channels both given; a root adds them, any other joint takes "
