@@ -85,7 +85,7 @@ class FactError(CaparError):
     """A fact whose arguments are not of its kind."""
 
 
-class ParError(CaparError):
+class ParError(CaparError, ValueError):
     """An action representation that contradicts itself."""
 
 

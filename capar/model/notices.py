@@ -143,6 +143,8 @@ def read_notice(document: Mapping[str, Any]) -> Notice:
         "end_s": (int | float | None, "seconds"),
         "message": (str | None, "a text"),
     }
+    if not isinstance(document, Mapping):
+        raise CaparError(f"expected an object in braces, found {document!r}")
     for name in document:
         if name not in kinds:
             raise UnknownNameError("field of a notice", name, kinds)
