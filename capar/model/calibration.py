@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields
 from enum import StrEnum
 from types import MappingProxyType
 
-from capar.model.errors import UnknownNameError
+from capar.model.errors import UnknownNameError, named
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,29 +197,21 @@ class Calibration:
         values = {each.name: getattr(self, each.name) for each in fields(self)}
         return Calibration, tuple({**values, "thresholds": dict(self.thresholds)}.values())
 
-    def sensor(self, name: str) -> BodyCalibration:
-        """That of the sensor of a name.
-
-        Raises:
-            UnknownNameError: There is none.
-        """
-        return _named("sensor", name, self.sensors)
-
-    def tag_object(self, name: str) -> BodyCalibration:
-        """That of the object of a name.
-
-        Raises:
-            UnknownNameError: There is none.
-        """
-        return _named("object", name, self.objects)
-
     def body(self, name: str) -> BodyCalibration:
         """That of the sensor of a name, or else of the object.
 
         Raises:
             UnknownNameError: There is neither.
         """
-        return _named("body", name, (*self.sensors, *self.objects))
+        return named("body", name, (*self.sensors, *self.objects), where="calibration")
+
+    def sensor(self, name: str) -> BodyCalibration:
+        """That of the sensor of a name; UnknownNameError where there is none."""
+        return named("sensor", name, self.sensors, where="calibration")
+
+    def tag_object(self, name: str) -> BodyCalibration:
+        """That of the object of a name; UnknownNameError where there is none."""
+        return named("object", name, self.objects, where="calibration")
 
     def pair(self, first: str, second: str) -> PairCalibration:
         """That of two bodies.
@@ -247,10 +239,3 @@ class Calibration:
         """Level velocity of a ground under an agent's feet [m/s]; zero of what stands."""
         known = {(belt.agent, belt.ground): belt.velocity_mps for belt in self.moving_grounds}
         return known.get((agent, ground), (0.0, 0.0))
-
-
-def _named(kind: str, name: str, known: tuple[BodyCalibration, ...]) -> BodyCalibration:
-    for body in known:
-        if body.name == name:
-            return body
-    raise UnknownNameError(kind, name, [body.name for body in known], where="calibration")

@@ -7,13 +7,13 @@ from enum import StrEnum
 from functools import cached_property
 from hashlib import sha256
 from types import MappingProxyType
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from capar.model import geometry
-from capar.model.errors import CaptureError, UnknownNameError
+from capar.model.errors import CaptureError, UnknownNameError, named
 from capar.model.notices import Notice as Notice
 from capar.model.notices import notice as notice
 
@@ -65,16 +65,27 @@ class Stream:
                 f"{frames} times, but positions {self.positions.shape} and orientations "
                 f"{self.orientations.shape}; they are (frames, 3) and (frames, 4)"
             )
-        _check_times(self.times)
+        if frames < 2:
+            raise CaptureError(f"{frames} frames; motion needs at least two")
+        if not np.isfinite(self.times).all():
+            stamp = np.flatnonzero(~np.isfinite(self.times))[0]
+            raise CaptureError(f"time stamp {stamp} is no number")
+        if (np.diff(self.times) <= 0).any():
+            frame = int(np.flatnonzero(np.diff(self.times) <= 0)[0]) + 1
+            raise CaptureError(
+                f"time goes from {self.times[frame - 1]:.6g} s to {self.times[frame]:.6g} s at "
+                f"frame {frame}; time stamps must increase"
+            )
         if np.isinf(self.positions).any():
             raise CaptureError("an infinite position; lost frames are NaN")
         lost = np.isnan(self.positions).any(axis=1) | np.isnan(self.orientations).any(axis=1)
         positions = np.where(lost[:, None], np.nan, self.positions)
-        orientations = np.where(lost[:, None], np.nan, self.orientations)
+        turned = np.where(lost[:, None], np.nan, self.orientations)
+        turned = geometry.continuous(geometry.unit(turned))
+        positions.flags.writeable = turned.flags.writeable = False
         object.__setattr__(self, "times", _frozen(self.times))
-        object.__setattr__(self, "positions", _owned(positions))
-        turned = geometry.continuous(geometry.unit(orientations))
-        object.__setattr__(self, "orientations", _owned(turned))
+        object.__setattr__(self, "positions", positions)
+        object.__setattr__(self, "orientations", turned)
 
     @classmethod
     def of_checked(
@@ -88,9 +99,9 @@ class Stream:
         They may lie on disk, so that a long recording needs no memory until it is read.
         """
         stream = cls.__new__(cls)
-        object.__setattr__(stream, "times", times)
-        object.__setattr__(stream, "positions", positions)
-        object.__setattr__(stream, "orientations", orientations)
+        own = {"times": times, "positions": positions, "orientations": orientations}
+        for name, array in own.items():
+            object.__setattr__(stream, name, array)
         return stream
 
     @cached_property
@@ -205,20 +216,6 @@ class PivotContact:
     distance_m: float
 
 
-def _check_times(times: Float[np.ndarray, "frames"]) -> None:
-    if len(times) < 2:
-        raise CaptureError(f"{len(times)} frames; motion needs at least two")
-    if not np.isfinite(times).all():
-        raise CaptureError(f"time stamp {np.flatnonzero(~np.isfinite(times))[0]} is no number")
-    steps = np.diff(times)
-    if (steps <= 0).any():
-        frame = int(np.flatnonzero(steps <= 0)[0]) + 1
-        raise CaptureError(
-            f"time goes from {times[frame - 1]:.6g} s to {times[frame]:.6g} s at frame {frame}; "
-            "time stamps must increase"
-        )
-
-
 def _frozen(array: np.ndarray) -> np.ndarray:
     """The array read-only: itself if nobody can write to it, else a copy."""
     if array.base is None and not array.flags.writeable:
@@ -228,25 +225,15 @@ def _frozen(array: np.ndarray) -> np.ndarray:
     return out
 
 
-def _owned(array: np.ndarray) -> np.ndarray:
-    """An array that was made here, read-only without a copy."""
-    array.flags.writeable = False
-    return array
-
-
 UNITS: Mapping[str, float] = {
     "m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048,
 }  # fmt: skip
 """Metres per unit, by the names that headers and capture.toml use."""
 
 UP: Mapping[str, tuple[str, float]] = {
-    "z": ("x", 0.0),
-    "y": ("x", 90.0),
-    "x": ("y", -90.0),
-    "-z": ("x", 180.0),
-    "-y": ("x", -90.0),
-    "-x": ("y", 90.0),
-}
+    "z": ("x", 0.0), "y": ("x", 90.0), "x": ("y", -90.0),
+    "-z": ("x", 180.0), "-y": ("x", -90.0), "-x": ("y", 90.0),
+}  # fmt: skip
 """The rotation that brings each axis to z: about which axis, and by how much [degrees]."""
 
 AXIS_COSINE = 0.9
@@ -355,9 +342,6 @@ def recorded_at(sources: Sequence[Source]) -> str:
     )
 
 
-_Named = TypeVar("_Named", Sensor, TagObject)
-
-
 @dataclass(frozen=True, eq=False)
 class Capture:
     """One recorded trial: every stream on one clock, the scene, and who performed."""
@@ -392,10 +376,13 @@ class Capture:
         """Check names and clocks."""
         if not self.sensors:
             raise CaptureError(f"capture {self.name!r} has no tracking sensor; name at least one")
-        for kind, group in (("sensor", self.sensors), ("object", self.objects)):
+        agents = [each.name for each in self.agents]
+        for kind, group in (
+            ("sensor", self.sensors), ("object", self.objects), ("agent", self.agents)
+        ):  # fmt: skip
             names = [each.name for each in group]
             for name in names:
-                if not NAME.fullmatch(name):
+                if kind != "agent" and not NAME.fullmatch(name):
                     raise CaptureError(
                         f"{kind} {name!r}: names begin with a lower-case letter and hold letters, "
                         "digits and underscores"
@@ -403,6 +390,8 @@ class Capture:
                 if names.count(name) > 1:
                     raise CaptureError(f"two {kind}s are called {name!r}")
         for body in self._all:
+            if body.agent and body.agent not in agents:
+                raise UnknownNameError("agent", body.agent, agents, where=body.name)
             if not np.array_equal(body.stream.times, self.times):
                 raise CaptureError(
                     f"{body.name!r} is on another clock than {self.sensors[0].name!r}"
@@ -413,7 +402,6 @@ class Capture:
             for name in (pair.first, pair.second):
                 if name not in self.bodies:
                     raise UnknownNameError("body", name, self.bodies, where="pivot contact")
-        self._check_agents()
         self._check_parts()
 
     def _check_parts(self) -> None:
@@ -426,15 +414,6 @@ class Capture:
                     f"{part.name!r} is part of {part.part_of!r}, which another agent wears; the "
                     "parts of an end-effector are of one agent"
                 )
-
-    def _check_agents(self) -> None:
-        agents = [each.name for each in self.agents]
-        for name in agents:
-            if agents.count(name) > 1:
-                raise CaptureError(f"two agents are called {name!r}")
-        for body in self._all:
-            if body.agent and body.agent not in agents:
-                raise UnknownNameError("agent", body.agent, agents, where=body.name)
 
     @property
     def agents(self) -> tuple[Agent, ...]:
@@ -451,7 +430,6 @@ class Capture:
 
     @property
     def _all(self) -> tuple[Sensor | TagObject, ...]:
-        """Sensors, then objects."""
         return (*self.sensors, *self.objects)
 
     @property
@@ -480,8 +458,7 @@ class Capture:
         Raises:
             UnknownNameError: There is no such sensor.
         """
-        parts = (each for each in self.sensors if each.part_of == name)
-        return (self.sensor(name), *parts)
+        return (self.sensor(name), *(each for each in self.sensors if each.part_of == name))
 
     @property
     def attending(self) -> tuple[Sensor, ...]:
@@ -494,7 +471,7 @@ class Capture:
         Raises:
             UnknownNameError: There is none.
         """
-        return _named("sensor", name, self.sensors)
+        return named("sensor", name, self.sensors)
 
     def tag_object(self, name: str) -> TagObject:
         """The tag object of that name.
@@ -502,11 +479,4 @@ class Capture:
         Raises:
             UnknownNameError: There is none.
         """
-        return _named("object", name, self.objects)
-
-
-def _named(kind: str, name: str, group: tuple[_Named, ...]) -> _Named:
-    for member in group:
-        if member.name == name:
-            return member
-    raise UnknownNameError(kind, name, [member.name for member in group])
+        return named("object", name, self.objects)

@@ -1,8 +1,9 @@
 """Mistakes that a user can make, each saying what, where, and what would have been right."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
+from typing import Protocol, TypeVar
 
 MOST_LISTED = 20
 """So many names that exist are all listed; of more, the nearest and their number."""
@@ -29,24 +30,16 @@ class UnknownNameError(CaparError):
     def __init__(
         self, kind: str, name: str, known: Iterable[str], *, where: str = "", listed: bool = False
     ) -> None:
-        self.kind = kind
-        self.name = name
-        self.known = sorted(known)
-        self.where = where
+        self.kind, self.name, self.known, self.where = kind, name, sorted(known), where
         close = _nearest(name, self.known, n=1)
         hint = f" Did you mean {close[0]!r}?" if close else ""
         place = f"{where}: " if where else ""
-        super().__init__(
-            f"{place}no {kind} {name!r}; {_listed(name, self.known, whole=listed)}.{hint}"
-        )
-
-
-def _listed(name: str, known: list[str], *, whole: bool) -> str:
-    """The names that exist: all of a few, of many the nearest five and how many there are."""
-    if whole or len(known) <= MOST_LISTED:
-        return f"there are: {', '.join(known) or 'none'}"
-    nearest = _nearest(name, known, n=NEAREST, cutoff=0.0)
-    return f"there are {len(known)}, the nearest: {', '.join(nearest)}"
+        if listed or len(self.known) <= MOST_LISTED:
+            exist = f"there are: {', '.join(self.known) or 'none'}"
+        else:
+            nearest = _nearest(name, self.known, n=NEAREST, cutoff=0.0)
+            exist = f"there are {len(self.known)}, the nearest: {', '.join(nearest)}"
+        super().__init__(f"{place}no {kind} {name!r}; {exist}.{hint}")
 
 
 def _nearest(name: str, known: list[str], *, n: int, cutoff: float = 0.6) -> list[str]:
@@ -55,6 +48,26 @@ def _nearest(name: str, known: list[str], *, n: int, cutoff: float = 0.6) -> lis
     names = {one.lower(): one for one in reversed(known)}
     folded = [names[one] for one in get_close_matches(name.lower(), names, n=n, cutoff=cutoff)]
     return list(dict.fromkeys([*spelt, *folded]))[:n]
+
+
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+_Member = TypeVar("_Member", bound=_Named)
+
+
+def named(kind: str, name: str, members: Sequence[_Member], *, where: str = "") -> _Member:
+    """The member of a name.
+
+    Raises:
+        UnknownNameError: There is none.
+    """
+    for member in members:
+        if member.name == name:
+            return member
+    raise UnknownNameError(kind, name, [member.name for member in members], where=where)
 
 
 class FileError(CaparError):
@@ -67,9 +80,7 @@ class FileError(CaparError):
     """
 
     def __init__(self, path: Path | str, problem: str, remedy: str = "") -> None:
-        self.path = Path(path)
-        self.problem = problem
-        self.remedy = remedy
+        self.path, self.problem, self.remedy = Path(path), problem, remedy
         super().__init__(f"{path}: {problem}" + (f" {remedy}" if remedy else ""))
 
 
