@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from enum import Enum
 from functools import cache
-from inspect import get_annotations
 from itertools import groupby
 from operator import attrgetter
 from typing import Any, ClassVar, Self, TypeVar, cast, dataclass_transform, get_type_hints
@@ -231,7 +230,7 @@ def _ends_of(kind: type[Observed]) -> Callable[[Observed], tuple[int, ...]]:
 @cache
 def _naming_fields(kind: Any) -> tuple[str, ...]:
     """The fields by which other facts name an interval of a kind."""
-    return tuple(each for each in get_annotations(kind) if each != "last")
+    return tuple(each for each in _arguments(kind) if each != "last")
 
 
 _Kind = TypeVar("_Kind", bound=Observed)
@@ -253,7 +252,8 @@ def fact_kind(
     """
 
     def define(cls: type[_Kind]) -> type[_Kind]:
-        has = get_annotations(cls)
+        kind = dataclass(frozen=True, slots=True, order=True)(cls)
+        has = _arguments(cast(Any, kind))
         first = next(iter(has), "")
         own = next(each for each in reversed(Span) if set(each.value) <= set(has))
         made = Declaration(terms, first if has.get(first) is str else "", span or own, **declared)
@@ -265,11 +265,59 @@ def fact_kind(
         count = 1 + (list(has.values()).count(str) + 1 if made.sampled else len(has))
         if len(made.rdf) != count:
             raise FactError(f"{cls.__name__} declares {made.rdf}: expected {count} terms")
-        cls.predicate, cls.declaration = predicate, made
-        _defined.append(kind := dataclass(frozen=True, slots=True, order=True)(cls))
+        kind.predicate, kind.declaration = predicate, made
+        _defined.append(kind)
         return kind
 
     return define
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class ObjectInterval(Observed):
+    """An object, from the first to the last frame."""
+
+    object: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class BodyInterval(Observed):
+    """A body, from the first to the last frame."""
+
+    body: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class PairInterval(Observed):
+    """Two bodies, from the first to the last frame."""
+
+    body: str
+    other: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class OfContact(Observed):
+    """The contact of two bodies that begins at the first frame."""
+
+    body: str
+    other: str
+    first: int
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class BodyPlace(Observed):
+    """A place of a body at a frame [mm]."""
+
+    body: str
+    frame: int
+    x: int
+    y: int
+    z: int
 
 
 @fact_kind("frames", "FramesFact firstFrame lastFrame", span=Span.ALWAYS)
@@ -335,32 +383,20 @@ class Pause(Observed):
     others=("other",),
     negated="apart",
 )
-class Touching(Observed):
+class Touching(PairInterval):
     """Two bodies touch from the first to the last frame; an end-effector stands first."""
-
-    body: str
-    other: str
-    first: int
-    last: int
 
 
 @fact_kind("gap", "Gap body other firstFrame gap", span=Touching, powers={"micrometres": -6})
-class Gap(Observed):
+class Gap(OfContact):
     """How far two bodies are apart when they begin to touch [micrometres]; zero where they cut."""
 
-    body: str
-    other: str
-    first: int
     micrometres: int
 
 
 @fact_kind("moving", "Moving body firstFrame lastFrame", border=True, negated="still")
-class Moving(Observed):
+class Moving(ObjectInterval):
     """An object is away from each place where it rests, from the first to the last frame."""
-
-    object: str
-    first: int
-    last: int
 
 
 @fact_kind(
@@ -397,35 +433,24 @@ class Intended(Observed):
 
 @fact_kind("solid", "SolidObject body")
 class Solid(Observed):
-    """Neither an object's surface nor its kind leaves a hollow in it: nothing can be in it.
-
-    It is measured of what moves to and fro, of what that touches, and of what is tipped.
-    """
+    """Neither surface nor kind leaves a hollow in an object that moves to and fro or is tipped."""
 
     object: str
 
 
 @fact_kind("shapeless", "ShapelessObject body")
 class Shapeless(Observed):
-    """An object's shape is not known, so what is in it, or what it is in, is not known either.
-
-    It is measured of what moves to and fro, of what that touches, and of what is tipped.
-    """
+    """Of the same objects, one whose shape is unknown, so that what is in it is unknown too."""
 
     object: str
 
 
 @fact_kind("displaced", "Displacement body firstFrame lastFrame", border=True)
-class Displaced(Observed):
+class Displaced(ObjectInterval):
     """An object moves, from when it truly set off until it truly stopped.
 
-    That is where it was last within 1 mm and half a degree of a place of rest, or what noise makes,
-    and the little before that by which a motion from rest grows so far.
+    At those ends it was last within 1 mm and half a degree (or the noise) of a place of rest.
     """
-
-    object: str
-    first: int
-    last: int
 
 
 @fact_kind(
@@ -440,36 +465,18 @@ class Resting(Observed):
 
 
 @fact_kind("place", "Places body samples")
-class Place(Observed):
+class Place(BodyPlace):
     """Where the middle of a body is at a frame [millimetres]."""
-
-    body: str
-    frame: int
-    x: int
-    y: int
-    z: int
 
 
 @fact_kind("from_trunk", "TrunkPlaces body samples")
-class TrunkPlace(Observed):
-    """Where the middle of an end-effector is at a frame, from its agent's trunk [millimetres].
-
-    The axes turn with the trunk about the vertical, and do not lean.
-    """
-
-    body: str
-    frame: int
-    x: int
-    y: int
-    z: int
+class TrunkPlace(BodyPlace):
+    """A place from the agent's trunk [mm], in axes that turn with it about the vertical only."""
 
 
 @fact_kind("travelled", "Ways body samples")
 class Travelled(Observed):
-    """How far a body has gone along its path, and turned, since the capture began.
-
-    The way in millimetres, and the turn about any axis in milliradians.
-    """
+    """Path length [mm] and turn about any axis [mrad] of a body since the capture began."""
 
     body: str
     frame: int
@@ -479,11 +486,7 @@ class Travelled(Observed):
 
 @fact_kind("posture", "Postures body samples")
 class Posture(Observed):
-    """How a body stands at a frame [milliradians].
-
-    How far its upright axis is from the vertical, and the angle by which it has turned about the
-    vertical since the capture began.
-    """
+    """Angle of a body's upright axis to the vertical, and its turn about that so far [mrad]."""
 
     body: str
     frame: int
@@ -528,10 +531,7 @@ class Phase(Observed):
 
 @fact_kind("guided", "GuidedObject body guideKind other")
 class Guided(Observed):
-    """An object moves on one hinge or one rail of a fixed one, throughout the recording.
-
-    The kind is ``hinge`` or ``rail``; the base is the fixed object, by which it can be closed.
-    """
+    """An object moves on one ``hinge`` or ``rail`` of a fixed base throughout the recording."""
 
     object: str
     kind: str
@@ -540,10 +540,7 @@ class Guided(Observed):
 
 @fact_kind("opening", "Openings body samples")
 class Opening(Observed):
-    """How far an object on a guide is from its closed place at a frame.
-
-    In millimetres on a rail, in milliradians on a hinge.
-    """
+    """How far an object on a guide is from its closed place [mm on a rail, mrad on a hinge]."""
 
     object: str
     frame: int
@@ -554,8 +551,7 @@ class Opening(Observed):
 class Reverses(Observed):
     """A moving object that rose begins to sink, or one that sank after that to rise again.
 
-    Both are real ways and steep; the frame lies in the middle between the two. What is on a hinge
-    or a rail turns back on that instead.
+    Both are long enough and steep; the frame is in the middle. Guided objects turn back instead.
     """
 
     object: str
@@ -571,73 +567,43 @@ class DrawsBack(Observed):
 
 
 @fact_kind("swings", "Swinging body firstFrame lastFrame", border=True, stretch="swings")
-class Swings(Observed):
+class Swings(BodyInterval):
     """A body moves to and fro, again and again, from the first to the last frame."""
-
-    body: str
-    first: int
-    last: int
 
 
 @fact_kind(
     "lengthwise", "LengthwiseSwinging body firstFrame lastFrame", border=True, stretch="lengthwise"
 )
-class Lengthwise(Observed):
+class Lengthwise(BodyInterval):
     """A long, thin body moves to and fro along its own length, from the first to the last frame."""
-
-    body: str
-    first: int
-    last: int
 
 
 @fact_kind("leans", "Leaning body firstFrame lastFrame", border=True, stretch="leans")
-class Leans(Observed):
+class Leans(ObjectInterval):
     """An object's upright axis is far from the vertical, from the first to the last frame."""
-
-    object: str
-    first: int
-    last: int
 
 
 @fact_kind("flies", "Flying body firstFrame lastFrame", border=True, stretch="flies")
-class Flies(Observed):
+class Flies(ObjectInterval):
     """An object falls freely, from the first to the last frame."""
-
-    object: str
-    first: int
-    last: int
 
 
 @fact_kind("rolls", "Rolling body firstFrame lastFrame", stretch="rolls")
-class Rolls(Observed):
+class Rolls(ObjectInterval):
     """An object goes and turns about a level axis without slipping below its middle."""
-
-    object: str
-    first: int
-    last: int
 
 
 @fact_kind("travels", "Travelling body firstFrame lastFrame")
-class Travels(Observed):
+class Travels(ObjectInterval):
     """An object covers more way than a floor of motion in a moment, throughout."""
-
-    object: str
-    first: int
-    last: int
 
 
 @fact_kind(
     "upward", "ContactNormal body other firstFrame upward", span=Touching, powers={"permille": -3}
 )
-class ContactNormal(Observed):
-    """How far the normal of a contact points up, from the other to the body [1/1000].
+class ContactNormal(OfContact):
+    """How far a contact's normal points up, at its first frame [1/1000]: 1000 if it lies on it."""
 
-    Stated at the contact's first frame; 1000 where the body lies on the other.
-    """
-
-    body: str
-    other: str
-    first: int
     permille: int
 
 
@@ -647,15 +613,9 @@ class ContactNormal(Observed):
     span=Touching,
     powers={"x": -3, "y": -3},
 )
-class PressDirection(Observed):
-    """Which way an end-effector presses aside on an object: x and y of the unit vector [1/1000].
+class PressDirection(OfContact):
+    """Level x and y of the unit normal from an end-effector to what it presses [1/1000]."""
 
-    That is the normal of the contact, from the end-effector to the object, in the world.
-    """
-
-    body: str
-    other: str
-    first: int
     x: int
     y: int
 
@@ -663,28 +623,15 @@ class PressDirection(Observed):
 @fact_kind(
     "sighted", "SightNormal body other firstFrame sightward", span=Touching, powers={"permille": -3}
 )
-class SightNormal(Observed):
-    """How far the normal of a contact with a head points where the head looks [1/1000].
+class SightNormal(OfContact):
+    """How far a contact's normal points where the touched head looks [1/1000]: -1000 behind."""
 
-    1000 where the face is touched from before it, 0 at the temples, -1000 at the back.
-    """
-
-    body: str
-    other: str
-    first: int
     permille: int
 
 
 @fact_kind("rides", "Riding body other firstFrame", span=Touching)
-class Rides(Observed):
-    """A body is borne by another one, in or on it, and goes along when that one moves.
-
-    Stated of the contact that begins at the first frame.
-    """
-
-    body: str
-    other: str
-    first: int
+class Rides(OfContact):
+    """A body is borne by another one, in or on it, and goes along when that one moves."""
 
 
 @fact_kind(
@@ -693,12 +640,9 @@ class Rides(Observed):
     span=Touching,
     powers={"speed": -3},
 )
-class ClosingSpeed(Observed):
+class ClosingSpeed(OfContact):
     """How fast two bodies approached each other when they began to touch [mm/s]."""
 
-    body: str
-    other: str
-    first: int
     speed: int
 
 
@@ -708,26 +652,15 @@ class ClosingSpeed(Observed):
     span=Touching,
     powers={"speed": -3},
 )
-class ReleaseSpeed(Observed):
-    """How fast an object goes when an end-effector's contact with it ends [mm/s].
+class ReleaseSpeed(OfContact):
+    """How fast an object goes when an end-effector's contact with it ends [mm/s]."""
 
-    Stated of the contact that begins at the first frame.
-    """
-
-    body: str
-    other: str
-    first: int
     speed: int
 
 
 @fact_kind("seated", "Seat body other firstFrame lastFrame", border=True)
-class Seated(Observed):
+class Seated(PairInterval):
     """A body is down on another one that bears it: in a contact, less its coming and going."""
-
-    body: str
-    other: str
-    first: int
-    last: int
 
 
 @fact_kind(
@@ -752,10 +685,9 @@ class Bears(Observed):
     others=("other",),
 )
 class Lies(Observed):
-    """How a body lies to another.
+    """How a body lies to another: inside, dipped into, above, below, beside, along or near it.
 
-    It is inside it, or dips into it with one end; it is above, below, beside or along it, or
-    merely near. An end-effector that touches it ``shifts`` from one place on it to another.
+    An end-effector that touches it ``shifts`` from one place on it to another.
     """
 
     body: str
@@ -789,10 +721,7 @@ class Between(Observed):
     others=("other",),
 )
 class Passage(Observed):
-    """A stretch of being inside or above another ends at another side than it began.
-
-    The first frame names the stretch; the sides are opposite or merely other ones.
-    """
+    """A body leaves the inside or the space above another at an opposite or merely another side."""
 
     body: str
     how: str
@@ -803,10 +732,7 @@ class Passage(Observed):
 
 @fact_kind("moves_with", "CoMotion body other firstFrame lastFrame gap", powers={"gap": -3})
 class MovesWith(Observed):
-    """A travelling object is steady in another body's frame, so far from touching it [mm].
-
-    Of a hand or thing that is far away, at least so far.
-    """
+    """A travelling object is steady in another body's frame, so far from touching it [mm]."""
 
     object: str
     body: str
@@ -820,24 +746,19 @@ MEASURED: tuple[type[Observed], ...] = tuple(_defined)
 
 
 @fact_kind("doubted", "FlickerCorrection body other firstFrame lastFrame takenFor")
-class FlickerCorrection(Observed):
-    """A stretch that the rules do not take as it was measured: it is a flicker.
+class FlickerCorrection(PairInterval):
+    """A measured interval that the rules take for the contrary: it is a flicker.
 
-    It is taken for contact, ``touching``, or for none, ``apart``. Of one body, which stands twice,
-    it is taken for an object's motion, ``moving``, or for none, ``still``; for an end-effector's
-    rest, ``resting``, or for none, ``going``.
+    Taken for ``touching`` or ``apart``; of one body, which stands twice, for ``moving`` or
+    ``still``, or ``resting`` or ``going``.
     """
 
-    body: str
-    other: str
-    first: int
-    last: int
     taken: str
 
 
 @fact_kind("moved_by", "MovedBy body mover how firstFrame lastFrame")
 class MovedBy(Observed):
-    """What moves an object through a part of its motion, as the rules of movers tell.
+    """What moves an object through a part of its motion, as the rules of movers derive.
 
     How is ``carried``, ``along``, ``pushed`` (or pulled, or struck), ``through``, ``set_going`` or
     ``body``; or ``unknown``, with ``beyond_reach``, ``left_behind`` or ``nobody`` for the mover.
