@@ -146,7 +146,7 @@ def handling(
     )
     held = []
     for name, seconds, move in steps:
-        moves = {each: move for each in (thing, *beside, *load)} if move else {}
+        moves = dict.fromkeys((thing, *beside, *load), move) if move else {}
         look = "ahead" if move and move.to_mouth else thing
         held.append(Phase(name, seconds, holds, moves, look))
     reach = Phase("reach", reach_s, reaches, look=thing)
