@@ -16,6 +16,7 @@ import json
 import os
 import resource
 import time
+from multiprocessing import active_children
 from pathlib import Path
 from typing import Any
 
@@ -119,9 +120,8 @@ def memory_figures(minutes: float) -> dict[str, Any]:
         observer.push([Poses(number / 100.0, places, source.orientations)])
         if (number + 1) % 30000 == 0:
             minute = (number + 1) // 6000
-            worker = observer.rules_process.worker
             own[minute] = _resident_mb("self")
-            workers[minute] = _resident_mb(str(worker)) if worker else 0.0
+            workers[minute] = sum(_resident_mb(str(each.pid)) for each in active_children())
             print(f"  {minute} min: {own[minute]:.0f} + {workers[minute]:.0f} MB", flush=True)
     observer.rules_process.close()
     spent = time.process_time() - start + sum(os.times()[2:4])

@@ -50,23 +50,22 @@ Displacement = Float[np.ndarray, "frames 3"]
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """A quantity at frames of a recording, in the unit of rules."""
+    """A quantity at frames of a recording, in the unit of rules.
+
+    Attributes:
+        values: NaN where a body was lost.
+        limits: The limits that extractors compare it with.
+        bars: First and last frames between which a fact about it holds.
+        held: What holds there.
+        most: Whether the greatest value of an interval counts, and not its last one.
+    """
 
     frames: Frames
     values: Values
-    """NaN where a body was lost."""
-
     limits: tuple[float, ...] = ()
-    """The limits that extractors compare it with."""
-
     bars: tuple[tuple[int, int], ...] = ()
-    """First and last frames between which a fact about it holds."""
-
     held: str = ""
-    """What holds there."""
-
     most: bool = False
-    """Whether the greatest value of an interval counts, and not its last one."""
 
     def frame(self, first: int, last: int) -> int:
         """The frame of an interval whose value counts; the last one if none is known."""
@@ -75,6 +74,11 @@ class Series:
             return last
         known = self.frames[inside]
         return int(known[np.argmax(self.values[inside])] if self.most else known[-1])
+
+    def within(self, first: int, last: int) -> float | None:
+        """The value that counts of an interval; None if it is not known."""
+        values = self.values[self.frames == self.frame(first, last)]
+        return float(values[0]) if len(values) and not np.isnan(values[0]) else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,15 +113,13 @@ class Measures:
     def _valued(self, asked: Measured) -> Measured | None:
         frames = np.unique([asked.first, asked.last])
         series = self.series(asked, frames if asked.quantity == "distance" else None)
-        if series is None:
-            return None
-        at = series.values[series.frames == series.frame(asked.first, asked.last)]
-        if not len(at) or not math.isfinite(at[0]):
+        value = series and series.within(asked.first, asked.last)
+        if series is None or value is None or not math.isfinite(value):
             return None
         scale = QUANTITIES[asked.quantity].scale
         limits = series.limits
         limit = (min if asked.relation == ">" else max)(limits) * scale if limits else None
-        return replace(asked, value=float(at[0]) * scale, limit=limit)
+        return replace(asked, value=value * scale, limit=limit)
 
     def series(self, asked: Measured, frames: Frames | None = None) -> Series | None:
         """A quantity over time; None if it is none.

@@ -50,61 +50,54 @@ EDGES = ("starts_moving", "stops_moving")
 
 @dataclass(frozen=True, slots=True)
 class LiveHorizons:
-    """How far live observation looks back, and how long it waits before it settles anything."""
+    """How far live observation looks back, and how long it waits before it settles anything.
+
+    Attributes:
+        stride_s: Between two measurements of the window at most [s]; it is measured once more as
+            soon as a segment that was found is to be settled.
+        grain_s: Windows begin at multiples of this [s]: what is measured at their first frame is
+            then the same several times in a row, and is known.
+        watch_s: Between two measurements at least [s], where an object moves whose motion is
+            awaited.
+        announce_s: After its end a segment is announced [s]: ends that are newer still move, as
+            much of what the filter asks for has not been seen.
+        settle_s: After its end a segment is settled [s]: what later frames change in a smoothed
+            pose after 0.4 s is less than a millionth of its path, and losses that are shorter than
+            0.1 s are filled. That is also longer than contacts that are dropped and gaps that are
+            closed (0.1 s).
+        edge_s: After its end a segment is settled at whose end an object starts or stops [s]: when
+            it started is found by how its path grew until it was well beyond its floor.
+        lasts_s: How much later than a rule asks for something is taken to have lasted [s].
+        fresh_s: How long a motion that has just begun may turn out to be none [s]: a glitch of the
+            tracker, or what the filter makes of the last frames.
+        near_s: How long it is awaited whether bodies touch again that have stayed near each other
+            [s].
+        window_s: Least length of the window [s].
+        motion_s: It reaches back to the beginning of every motion that goes on, to so long ago at
+            most [s]: how a motion is divided is known from its beginning.
+        rest_s: The place of a resting body is the median of so much of its rest [s].
+        handing_s: While two end-effectors hold one object, so long it is awaited who lets go of it
+            [s].
+        rules_s: How far back rules see at most [s]; flicker is resolved in windows of 10 s.
+        segments: How many settled segments of a link rules are told again, so that they know what a
+            segment follows; fewer where they last longer than ``rules_s``.
+    """
 
     stride_s: float = 0.45
-    """Between two measurements of the window at most [s]; it is measured once more as soon as a
-    segment that was found is to be settled."""
-
     grain_s: float = 1.0
-    """Windows begin at multiples of this [s]: what is measured at their first frame is then the
-    same several times in a row, and is known."""
-
     watch_s: float = 0.05
-    """Between two measurements at least [s], where an object moves whose motion is awaited."""
-
     announce_s: float = 0.4
-    """After its end a segment is announced [s]: ends that are newer still move, as much of what the
-    filter asks for has not been seen."""
-
     settle_s: float = 0.5
-    """After its end a segment is settled [s]: what later frames change in a smoothed pose after
-    0.4 s is less than a millionth of its path, and losses that are shorter than 0.1 s are filled.
-    That is also longer than contacts that are dropped and gaps that are closed (0.1 s)."""
-
     edge_s: float = 0.75
-    """After its end a segment is settled at whose end an object starts or stops [s]: when it
-    started is found by how its path grew until it was well beyond its floor."""
-
     lasts_s: float = 0.1
-    """How much later than a rule asks for something is taken to have lasted [s]."""
-
     fresh_s: float = 0.2
-    """How long a motion that has just begun may turn out to be none [s]: a glitch of the tracker,
-    or what the filter makes of the last frames."""
-
     near_s: float = 0.9
-    """How long it is awaited whether bodies touch again that have stayed near each other [s]."""
-
     window_s: float = 4.0
-    """Least length of the window [s]."""
-
     motion_s: float = 10.0
-    """It reaches back to the beginning of every motion that goes on, to so long ago at most [s]:
-    how a motion is divided is known from its beginning."""
-
     rest_s: float = 30.0
-    """The place of a resting body is the median of so much of its rest [s]."""
-
     handing_s: float = 2.0
-    """While two end-effectors hold one object, so long it is awaited who lets go of it [s]."""
-
     rules_s: float = 20.0
-    """How far back rules see at most [s]; flicker is resolved in windows of 10 s."""
-
     segments: int = 5
-    """How many settled segments of a link rules are told again, so that they know what a segment
-    follows; fewer where they last longer than ``rules_s``."""
 
     def __post_init__(self) -> None:
         """Check that the window holds what it is to settle.

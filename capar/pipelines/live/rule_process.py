@@ -3,21 +3,16 @@
 The solver frees no term that it ever saw, and every frame has terms of its own: within an hour they
 would fill some hundred megabytes. So a process of its own is asked, which another one replaces in
 time. The first minutes need none: to start one takes as long as some answers.
-
-Run as a program this module is such a worker: a pickled profile comes in, then one pickled list of
-facts after the other; for each list the pickled answer goes out, or the error that it raised.
 """
 
-import pickle
-import subprocess
+import signal
 import sys
-import weakref
 from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
-from pathlib import Path
-from threading import Thread
+from multiprocessing import get_context
 
-import capar
 from capar.model.errors import CaparError
 from capar.model.facts import Fact
 from capar_rules.borders.deflicker import steady
@@ -25,17 +20,9 @@ from capar_rules.engine.profiles import Profile
 from capar_rules.pars.inference import Inference, infer
 
 OWN_ASKS = 400  # So often this process asks the rules itself [1]: in three minutes or more.
-ASKS = 800
-"""So often a worker is asked before another one takes over [1]: some ten megabytes of terms."""
-
+ASKS = 800  # So often a worker is asked before another one replaces it [1]: some ten megabytes.
 AHEAD = 40  # The next worker is started so many questions before [1]: in twenty seconds or so.
 WARMING = 3  # Who has answered so often has read the rules for good [1].
-
-_START = (
-    "import runpy, sys; sys.path.insert(0, sys.argv[1]); "
-    "runpy.run_module('capar.pipelines.live.rule_process', run_name='__main__')"
-)
-"""Runs the worker of this very copy of the package, from wherever that was imported."""
 
 
 def inferred(facts: Sequence[Fact], rules: Profile) -> Inference:
@@ -60,13 +47,8 @@ class RuleProcess:
         self._rules = rules
         self._left = own_asks
         self._asks = asks
-        self._worker: _Worker | None = None
-        self._next: _Worker | None = None
-
-    @property
-    def worker(self) -> int | None:
-        """The number of the worker's process; None while this process answers itself."""
-        return self._worker.process.pid if self._worker else None
+        self._worker: ProcessPoolExecutor | None = None
+        self._next: ProcessPoolExecutor | None = None
 
     def warm(self, facts: Sequence[Fact]) -> None:
         """Read the rules for good, so that no later question waits for it; the answers are left.
@@ -84,19 +66,22 @@ class RuleProcess:
             RuleError: The rules have a fault, or not exactly one answer.
         """
         if self._left <= AHEAD and self._next is None:
-            self._next = _Worker(self._rules, facts)
+            # A new interpreter: a fork would keep the terms of this one.
+            self._next = ProcessPoolExecutor(
+                1, get_context("spawn"), _start, (self._rules, tuple(facts))
+            )
+            self._next.submit(int)
         if self._left <= 0 and self._next is not None:
             self._end_worker()
             self._worker, self._next, self._left = self._next, None, self._asks
-            self._worker.warming.join()
         self._left -= 1
         if self._worker is not None:
             try:
-                return self._worker.answer(facts)
-            except _EndedError:
+                return self._worker.submit(inferred, tuple(facts), self._rules).result()
+            except BrokenProcessPool:
                 # Until another one takes over, this process answers itself; for good, if none can
                 # be started here.
-                starts = self._worker.answered
+                starts = self._left < self._asks - 1
                 self._end_worker()
                 self._left = min(self._left, AHEAD) if starts else sys.maxsize
         return inferred(facts, self._rules)
@@ -110,77 +95,13 @@ class RuleProcess:
 
     def _end_worker(self) -> None:
         if self._worker is not None:
-            self._worker.warming.join()
-            self._worker.end()
+            self._worker.shutdown()
         self._worker = None
 
 
-class _EndedError(Exception):
-    """A worker has ended by itself."""
-
-
-class _Worker:
-    """A process that answers; it reads the rules for good aside, until ``warming`` has ended."""
-
-    def __init__(self, rules: Profile, facts: Sequence[Fact]) -> None:
-        # In a session of its own: who interrupts this process still wants its last answer.
-        command = [sys.executable, "-P", "-c", _START, str(Path(capar.__file__).parents[1])]
-        self.process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
-        )
-        self.answered = False
-        self.end = weakref.finalize(self, _end, self.process)
-        self.warming = Thread(target=self._warm, args=(rules, tuple(facts)), daemon=True)
-        self.warming.start()
-
-    def _warm(self, rules: Profile, facts: Sequence[Fact]) -> None:
-        with suppress(CaparError, _EndedError, BrokenPipeError):
-            self._send(rules)
-            for _ in range(WARMING):
-                self.answer(facts)
-
-    def answer(self, facts: Sequence[Fact]) -> Inference:
-        assert self.process.stdout is not None
-        try:
-            self._send(tuple(facts))
-            answer = pickle.load(self.process.stdout)
-            self.answered = True
-        except (EOFError, BrokenPipeError, pickle.UnpicklingError):
-            raise _EndedError from None
-        if isinstance(answer, CaparError):
-            raise answer
-        assert isinstance(answer, Inference)
-        return answer
-
-    def _send(self, value: object) -> None:
-        assert self.process.stdin is not None
-        pickle.dump(value, self.process.stdin, protocol=pickle.HIGHEST_PROTOCOL)
-        self.process.stdin.flush()
-
-
-def _end(process: "subprocess.Popen[bytes]") -> None:
-    assert process.stdin is not None and process.stdout is not None
-    with suppress(BrokenPipeError):
-        process.stdin.close()
-    process.stdout.close()
-    process.wait()
-
-
-def _serve() -> None:
-    """Answer until nothing more is asked."""
-    asked, answered = sys.stdin.buffer, sys.stdout.buffer
-    rules: Profile = pickle.load(asked)
-    with suppress(EOFError):
-        while True:
-            facts: Sequence[Fact] = pickle.load(asked)
-            answer: Inference | CaparError
-            try:
-                answer = inferred(facts, rules)
-            except CaparError as error:
-                answer = error
-            pickle.dump(answer, answered, protocol=pickle.HIGHEST_PROTOCOL)
-            answered.flush()
-
-
-if __name__ == "__main__":
-    _serve()
+def _start(rules: Profile, facts: Sequence[Fact]) -> None:
+    """Make a worker ready: who interrupts its parent still wants its last answer."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with suppress(CaparError):
+        for _ in range(WARMING):
+            inferred(facts, rules)
