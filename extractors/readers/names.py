@@ -11,11 +11,8 @@ from importlib.resources import files
 from itertools import pairwise, takewhile
 from typing import Any
 
-import numpy as np
-from jaxtyping import Float
-
 from capar.model.errors import CaparError, UnknownNameError
-from extractors.readers.recording import UNITS, Recording
+from extractors.readers.recording import Recording
 
 SHARED_BY = 8
 """A beginning or an ending up to a separator that so many names share is none of their own [1]."""
@@ -233,15 +230,6 @@ def recognise(names: Iterable[str]) -> Convention:
     return convention(max(fits, key=lambda name: (size[name], shares[name])))
 
 
-HEIGHT_M = (0.85, 2.0)
-"""How far the head's joint or markers are above the feet of people of 1.0 to 2.2 m [m]."""
-
-USUAL_M = 1.4  # That height of an adult of whom nothing is known [m].
-STATURE_M = (1.0, 2.2)  # How tall people are, from children of four years on [m].
-USUAL_STATURE_M = 1.7  # How tall an adult is of whom nothing is known [m].
-CLEAR = 2.0
-"""The upward axis is clear if the body is so many times longer along it than along another."""
-
 LIMBS = {
     "hand": ("hand", "wrist", "palm", "main"),
     "head": ("head", "skull", "camera", "hmd"),
@@ -337,72 +325,6 @@ def end_effectors(recording: Recording) -> dict[str, str]:
         return False
 
     return {name: kind for name, kind in kinds.items() if kind and not is_below(name, kind)}
-
-
-@dataclass(frozen=True)
-class Standing:
-    """How a person stands in a recording, by the names of head and feet."""
-
-    up: str
-    """The axis from the feet to the head: ``z``, ``-y`` ..."""
-
-    height: float
-    """Median distance from the feet to the head along it, in the file's unit."""
-
-    clear: bool
-    """Whether the body is much longer along this axis than along the others."""
-
-    evidence: str
-    """What shows the height, in the file's unit."""
-
-    whole: bool = False
-    """Whether the height is the person's stature, not that of the head above the feet."""
-
-    @property
-    def what(self) -> str:
-        """What has this height."""
-        return "the person" if self.whole else "the head above the feet"
-
-    @property
-    def range_m(self) -> tuple[float, float]:
-        """What this height is of people of 1.0 to 2.2 m [m]."""
-        return STATURE_M if self.whole else HEIGHT_M
-
-    def is_persons(self, unit_m: float) -> bool:
-        """Whether somebody has this height in a unit [m]."""
-        low, high = self.range_m
-        return low <= self.height * unit_m <= high
-
-    @property
-    def unit(self) -> str:
-        """The unit in which somebody has this height; empty if none makes it so."""
-        return next((name for name in UNITS if self.is_persons(UNITS[name])), "")
-
-    @property
-    def scale_m(self) -> float:
-        """Metres per unit with which the person has the usual height."""
-        return (USUAL_STATURE_M if self.whole else USUAL_M) / self.height
-
-
-def standing(recording: Recording) -> Standing | None:
-    """How a person stands, if the file has a head and a foot by name."""
-    points = {name: each.positions for name, each in recording.bodies.items()}
-    points |= recording.markers
-    ends: dict[str, list[Float[np.ndarray, "3"]]] = {"head": [], "foot": [], "hand": [], "": []}
-    for name, places in points.items():
-        if not np.isnan(places).all():
-            ends[limb_of(name)].append(np.nanmedian(places, axis=0))
-    if not ends["head"] or not ends["foot"]:
-        return None
-    way = np.mean(ends["head"], axis=0) - np.mean(ends["foot"], axis=0)
-    axis = int(np.argmax(np.abs(way)))
-    lengths = np.sort(np.abs(way))
-    if not lengths[2] > 0.0:
-        return None
-    sign = "-" if way[axis] < 0.0 else ""
-    clear = bool(lengths[2] > CLEAR * lengths[1])
-    evidence = f"the head is {lengths[2]:.4g} above the feet"
-    return Standing(f"{sign}{'xyz'[axis]}", float(lengths[2]), clear, evidence)
 
 
 Spelled = Mapping[str, list[tuple[str, str]]]

@@ -17,17 +17,14 @@ from capar.model.capture import upward
 from capar.model.errors import CaptureError
 from extractors.readers.bundle.bodies import arrangement, fit_cluster
 from extractors.readers.names import (
-    CLEAR,
     SIDES,
     BodyName,
-    Standing,
     body_names,
     computed,
     conventions,
-    standing,
     without_side,
 )
-from extractors.readers.recording import Recording
+from extractors.readers.recording import UNITS, Recording
 
 Track = Float[np.ndarray, "frames 3"]
 Points = Mapping[str, Track]
@@ -42,6 +39,11 @@ no more than the latter [m]."""
 
 FIXED_M = 0.02  # What never goes further than this from where it usually is does not move [m].
 LEAST_PARTS = 3  # A body is in a file if so many of its parts have a joint or marker.
+
+STATURE_M = (1.0, 2.2)  # How tall people are, from children of four years on [m].
+USUAL_STATURE_M = 1.7  # How tall an adult is of whom nothing is known [m].
+CLEAR = 2.0
+"""An axis is clear if the body is so many times longer along it than along another."""
 
 HANGING = {
     "pelvis": ("thigh", "shank", "foot"),
@@ -91,6 +93,32 @@ BENDS = ("toe_tip", "toes", "fingertip", "fingers")
 """Places that bend against the rest of the foot or hand."""
 
 
+@dataclass(frozen=True)
+class Standing:
+    """How a person stands in a recording."""
+
+    up: str
+    """The axis from the feet to the head: ``z``, ``-y`` ..."""
+
+    height: float
+    """Stature, in the file's unit."""
+
+    clear: bool
+    """Whether the body is much longer along this axis than along the others."""
+
+    parts: Sequence[str]
+    """The parts of the body by whose heights it is known."""
+
+    def is_persons(self, unit_m: float) -> bool:
+        """Whether somebody has this height in a unit [m]."""
+        return STATURE_M[0] <= self.height * unit_m <= STATURE_M[1]
+
+    @property
+    def unit(self) -> str:
+        """The unit in which somebody has this height; empty if none makes it so."""
+        return next((name for name in UNITS if self.is_persons(UNITS[name])), "")
+
+
 @dataclass(frozen=True, eq=False)
 class Contents:
     """A file's names, sorted into a body's and others."""
@@ -99,15 +127,9 @@ class Contents:
     body: Mapping[str, BodyName]
     """What is of a body; empty where too few parts of one are there."""
 
-    standing: Standing | None
-    beside: tuple[str, str] | None
-    """The axis that points up by left and right, and the evidence."""
-
-    @property
-    def usual_units_m(self) -> list[float]:
-        """Units that the conventions of its names use without stating them [m]."""
-        titles = {each.by for each in self.body.values()}
-        return [unit for c in conventions().values() if c.title in titles for unit in c.units_m]
+    standing: Standing | None = None
+    beside: str | None = None
+    """The axis along which left and right lie, where it is y or z."""
 
 
 def contents(recording: Recording) -> Contents:
@@ -117,11 +139,21 @@ def contents(recording: Recording) -> Contents:
     found = sided(body_names([*recording.bodies, *recording.markers]), metres)
     clocks = {len(each) for each in points.values()}
     if len({each.part for each in found.values()}) < LEAST_PARTS or len(clocks) != 1:
-        return Contents(recording, {}, standing(recording), None)
-    stands = standing(recording)
-    if stands is None or not stands.clear:
-        stands = standing_by_parts(points, found) or stands
-    return Contents(recording, found, stands, _up_beside(points, found))
+        return Contents(recording, {})
+    across, beside = rightwards(points, found), None
+    across = across[~np.isnan(across).any(axis=1)]
+    if len(across):
+        lengths = np.abs(np.median(across, axis=0))
+        axis = int(np.argmax(lengths))
+        if axis and lengths[axis] >= CLEAR * np.sort(lengths)[1]:
+            beside = "xyz"[axis]
+    return Contents(recording, found, standing_by_parts(points, found), beside)
+
+
+def usual_units_m(body: Mapping[str, BodyName]) -> list[float]:
+    """Units that the conventions of a body's names use without stating them [m]."""
+    titles = {each.by for each in body.values()}
+    return [unit for c in conventions().values() if c.title in titles for unit in c.units_m]
 
 
 def _points(recording: Recording) -> dict[str, Track]:
@@ -149,9 +181,9 @@ def keeps_distance(
 
 
 def _marker_sets(markers: Points) -> dict[str, list[str]]:
-    """Sets of three or more markers that share a prefix or, among the rest, keep their distances.
+    """Sets of three or more markers that keep their distances, by a name.
 
-    Positions are in metres.
+    They share a prefix or a first word, or are near each other. Positions are in metres.
     """
 
     def prefix(name: str) -> str:
@@ -163,27 +195,23 @@ def _marker_sets(markers: Points) -> dict[str, list[str]]:
         found = re.match(r"[A-Z]?[a-z]+", name)
         return found.group() if found else name
 
-    def left() -> list[str]:
-        taken = {name for members in sets.values() for name in members}
-        return [name for name in markers if name not in taken]
-
-    def free(name: str) -> str:
-        """The name itself, or with the first number that nothing else has."""
-        if name not in sets:
-            return name
-        stem = name.removesuffix("_1")
-        return next(each for n in range(2, len(sets) + 3) if (each := f"{stem}_{n}") not in sets)
-
     sets: dict[str, list[str]] = {}
-    for stem in (prefix, first_word):
+    for stem, near_m in ((prefix, NAMED_NEAR_M), (first_word, NAMED_NEAR_M), (None, NEAR_M)):
+        taken = {name for members in sets.values() for name in members}
         groups: dict[str, list[str]] = {}
-        for name in left():
-            groups.setdefault(stem(name), []).append(name)
+        for name in markers:
+            if name not in taken:
+                groups.setdefault(stem(name) if stem else "markers", []).append(name)
         for start, names in groups.items():
-            for members in _rigid_sets(markers, names, NAMED_NEAR_M):
-                sets[free(start)] = members
-    for members in _rigid_sets(markers, left(), NEAR_M):
-        sets[free("markers_1")] = members
+            for members in _rigid_sets(markers, names, near_m):
+                shared = members[0]
+                while not all(each.startswith(shared) for each in members):
+                    shared = shared[:-1]
+                shared = shared.rstrip(":_. 0123456789")
+                name = shared if len(shared) > 2 else start if stem else "markers_1"
+                numbered = (f"{name.removesuffix('_1')}_{n}" for n in range(2, len(sets) + 3))
+                free = (each for each in (name, *numbered) if each not in sets)
+                sets[next(free)] = members
     return sets
 
 
@@ -219,9 +247,9 @@ class Others:
     riding: Mapping[str, str]
     """Markers that keep their distance to a part of the body, and which part."""
 
-    unseen: tuple[str, ...]
-    computed: tuple[str, ...]
-    loose: tuple[str, ...]
+    unseen: Sequence[str]
+    computed: Sequence[str]
+    loose: Sequence[str]
 
 
 def others(markers: Points, body: Mapping[str, BodyName]) -> Others:
@@ -234,49 +262,30 @@ def others(markers: Points, body: Mapping[str, BodyName]) -> Others:
     unseen = [name for name, each in markers.items() if np.isnan(each).all()]
     made = computed(name for name in markers if name not in unseen)
     left = [n for n in markers if n not in body and n not in unseen and n not in made]
-    found = _marker_sets({name: markers[name] for name in left})
-    sets = {_set_name(name, members): members for name, members in found.items()}
-    taken = {name for members in found.values() for name in members}
+    sets = _marker_sets({name: markers[name] for name in left})
+    taken = {name for members in sets.values() for name in members}
     single = [name for name in left if name not in taken]
     riding = {name: part for name in single if (part := _carrier(name, markers, body))}
-    return Others(
-        sets=sets,
-        fixed=frozenset(
-            name for name, members in sets.items() if all(_stays(markers[n]) for n in members)
-        ),
-        riding=riding,
-        unseen=tuple(unseen),
-        computed=tuple(made),
-        loose=tuple(name for name in single if name not in riding),
-    )
 
+    def stays(name: str) -> bool:
+        places = markers[name][~np.isnan(markers[name]).any(axis=1)]
+        return bool(np.abs(places - np.median(places, axis=0)).max() <= FIXED_M)
 
-def _stays(track: Track) -> bool:
-    places = track[~np.isnan(track).any(axis=1)]
-    return bool(np.abs(places - np.median(places, axis=0)).max() <= FIXED_M)
+    fixed = frozenset(name for name, members in sets.items() if all(map(stays, members)))
+    loose = [name for name in single if name not in riding]
+    return Others(sets, fixed, riding, unseen, made, loose)
 
 
 def _carrier(name: str, markers: Points, body: Mapping[str, BodyName]) -> str:
     """The part of the body to two of whose markers a marker keeps its distance."""
-    near: dict[str, int] = {}
-    for other, each in body.items():
-        if other in markers and keeps_distance(
-            markers[name], markers[other], near_m=SEGMENT_M, rigid_m=RIDING_M
-        ):
-            part = f"{each.side} {each.part}".removeprefix("none ")
-            near[part] = near.get(part, 0) + 1
-    best = max(near, key=lambda part: near[part], default="")
-    return best if near.get(best, 0) >= 2 else ""
-
-
-def _set_name(name: str, members: Iterable[str]) -> str:
-    """The beginning that all members' names share, or the set's own name."""
-    first, *rest = members
-    length = 0
-    while length < len(first) and all(each[: length + 1] == first[: length + 1] for each in rest):
-        length += 1
-    shared = first[:length].rstrip(":_. 0123456789")
-    return shared if len(shared) > 2 else name
+    near = [
+        f"{each.side} {each.part}".removeprefix("none ")
+        for other, each in body.items()
+        if other in markers
+        and keeps_distance(markers[name], markers[other], near_m=SEGMENT_M, rigid_m=RIDING_M)
+    ]
+    best = max(near, key=near.count, default="")
+    return best if near.count(best) >= 2 else ""
 
 
 def sided(names: Mapping[str, BodyName], points: Points) -> dict[str, BodyName]:
@@ -353,11 +362,8 @@ def standing_by_parts(points: Points, names: Mapping[str, BodyName]) -> Standing
     slope = np.median(slopes, axis=0)
     axis, lengths = int(np.argmax(np.abs(slope))), np.sort(np.abs(slope))
     up = f"{'-' if slope[axis] < 0.0 else ''}{'xyz'[axis]}"
-    *most, last = {names[name].part: None for group in groups.values() for name in group}
-    listed = f"{', '.join(most)} and {last}" if most else last
-    evidence = f"by how high {listed} are the person is {lengths[2]:.4g} tall"
-    clear = bool(lengths[2] > CLEAR * lengths[1])
-    return Standing(up, float(lengths[2]), clear, evidence, whole=True)
+    parts = list(dict.fromkeys(names[name].part for group in groups.values() for name in group))
+    return Standing(up, float(lengths[2]), bool(lengths[2] > CLEAR * lengths[1]), parts)
 
 
 def rightwards(points: Points, names: Mapping[str, BodyName]) -> Track:
@@ -374,23 +380,6 @@ def rightwards(points: Points, names: Mapping[str, BodyName]) -> Track:
     if not across:
         return np.full((len(next(iter(points.values()))), 3), np.nan)
     return mean_of(across, across)
-
-
-def _up_beside(points: Points, names: Mapping[str, BodyName]) -> tuple[str, str] | None:
-    """The axis that points up, by the one along which right and left lie, with the evidence.
-
-    Files have y or z up; the one of them that is not across the body is.
-    """
-    way = rightwards(points, names)
-    way = way[~np.isnan(way).any(axis=1)]
-    if not len(way):
-        return None
-    lengths = np.abs(np.median(way, axis=0))
-    across = int(np.argmax(lengths))
-    if across == 0 or lengths[across] < CLEAR * np.sort(lengths)[1]:
-        return None
-    up = "yz"[across == 1]
-    return up, f"left and right lie along {'xyz'[across]}, and files have y or z up"
 
 
 def forwards(rightward: Track) -> Track:
@@ -427,7 +416,7 @@ class Floor:
 def floor(
     points: Points, feet: Mapping[str, Sequence[str]], rate_hz: float, radius_m: float
 ) -> Floor:
-    """The floor under some feet.
+    """The floor under some feet: where their lowest points are slow, or the lowest of all.
 
     Args:
         points: In the world: metres, z up.
@@ -435,30 +424,25 @@ def floor(
         rate_hz: Frames a second.
         radius_m: How far the surface of a foot's stand-in is from its points.
     """
-    heights = np.concatenate([_standing_heights(points, names, rate_hz) for names in feet.values()])
-    rests = bool(heights.size)
-    if not rests:
-        heights = np.array([np.nanmin(points[n][:, 2]) for group in feet.values() for n in group])
-    heights = heights[heights <= heights.min() + (LOW_M if rests else 0.0)]
+    standing, ground = [], []
+    for names in feet.values():
+        stack = np.stack([points[name] for name in names])
+        heights = np.where(np.isnan(stack[..., 2]), np.inf, stack[..., 2])
+        lowest, frames = np.argmin(heights, axis=0), np.arange(stack.shape[1])
+        speeds = np.full(stack.shape[:2], np.inf)
+        speeds[:, 1:] = np.linalg.norm(np.diff(stack, axis=1), axis=2) * rate_hz
+        own, height = speeds[lowest, frames], heights[lowest, frames]
+        standing.append(height[np.isfinite(height) & (own <= STANDING_MPS)])
+        ground.append(stack.reshape(-1, 3))
+    seen = np.concatenate(ground)
+    seen = seen[~np.isnan(seen).any(axis=1)]
+    rested = np.concatenate(standing)
+    rests = bool(rested.size)
+    heights = rested[rested <= rested.min() + LOW_M] if rests else seen[:, 2].min(keepdims=True)
     low, high = np.quantile(heights, SHARES)
-    ground = np.concatenate([points[name] for names in feet.values() for name in names])
-    ground = ground[~np.isnan(ground).any(axis=1), :2]
-    first, last = ground.min(axis=0) - MARGIN_M, ground.max(axis=0) + MARGIN_M
+    first, last = seen[:, :2].min(axis=0) - MARGIN_M, seen[:, :2].max(axis=0) + MARGIN_M
     (x, y), (long, wide) = ((first + last) / 2).tolist(), (last - first).tolist()
     return Floor(float(low) - radius_m, float(high - low), (x, y), (long, wide), rests)
-
-
-def _standing_heights(
-    points: Points, names: Sequence[str], rate_hz: float
-) -> Float[np.ndarray, "frames"]:
-    """Heights of a foot's lowest point in the frames in which it stands [m]."""
-    stack = np.stack([points[name] for name in names])
-    heights = np.where(np.isnan(stack[..., 2]), np.inf, stack[..., 2])
-    lowest, frames = np.argmin(heights, axis=0), np.arange(stack.shape[1])
-    speeds = np.full(stack.shape[:2], np.inf)
-    speeds[:, 1:] = np.linalg.norm(np.diff(stack, axis=1), axis=2) * rate_hz
-    own, height = speeds[lowest, frames], heights[lowest, frames]
-    return height[np.isfinite(height) & (np.nan_to_num(own, nan=np.inf) <= STANDING_MPS)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -537,13 +521,12 @@ def _residual(points: Points, names: Sequence[str]) -> float | None:
     """How far markers leave a rigid arrangement, in the median [m]; None if they are of none."""
     if len(names) < 3:
         return None
-    markers = {name: points[name] for name in names}
     try:
-        cluster = arrangement("draft", markers)
+        cluster = arrangement("draft", {name: points[name] for name in names})
     except CaptureError:
         return None
-    residuals = fit_cluster(cluster, np.stack(list(markers.values()), axis=1)).residuals
-    known = residuals[~np.isnan(residuals)]
+    fit = fit_cluster(cluster, np.stack([points[name] for name in names], axis=1))
+    known = fit.residuals[~np.isnan(fit.residuals)]
     return float(np.median(known)) if known.size else None
 
 
