@@ -256,7 +256,7 @@ def import_words(
         raise UnknownNameError("source of words", source, ("verbnet",))
     confirm_new(actionary, new=new)
     classes = read_verbnet(folder)
-    rate = key_rate(classes, wordnet())
+    keys, resolved = key_rate(classes, wordnet())
     with Actionary.open(actionary) as book:
         loaded = load_verbnet(book.store, classes, wordnet())
     every = [each for top in classes for each in top.family]
@@ -265,13 +265,13 @@ def import_words(
         "files": len(classes),
         "classes": len(every),
         "members": members,
-        "keys": rate.keys,
-        "keys_resolved": rate.resolved,
+        "keys": keys,
+        "keys_resolved": resolved,
         "loaded": loaded,
     }
     lines = [
-        f"{len(classes)} files with {len(every)} classes and {members} members; {rate.resolved} of "
-        f"{rate.keys} WordNet keys ({100 * rate.share:.1f} %) are in WordNet 3.1."
+        f"{len(classes)} files with {len(every)} classes and {members} members; {resolved} of "
+        f"{keys} WordNet keys ({100 * resolved / max(keys, 1):.1f} %) are in WordNet 3.1."
     ]
     lines += [] if loaded else ["The Actionary had them already."]
     answer(figures, lines, json=json, sort_keys=True)

@@ -4,9 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
-from types import MappingProxyType
 
-from capar.model.errors import UnknownNameError
 from kb.lexicon.wordnet import table, wordnet
 
 MOTION_FILES = (35, 38)
@@ -101,15 +99,11 @@ class Remark:
 def thesis_senses() -> tuple[SenseLink, ...]:
     """The thesis's table of senses, by sense key (thesis 6.1)."""
     return tuple(
-        SenseLink(
-            row["primitive"],
-            row["verb"],
-            row["key"],
-            Claimant.THESIS,
-            int(row["number_1_6"]),
-            row["remark"],
-        )
+        SenseLink(each, verb, key, Claimant.THESIS, int(number), remark)
         for row in table("thesis_senses")
+        for each, verb, key, number, remark in [
+            [row[e] for e in ("primitive", "verb", "key", "number_1_6", "remark")]
+        ]
     )
 
 
@@ -187,11 +181,8 @@ def motion_senses(verb: str) -> tuple[str, ...]:
     of contact or motion, if it has one.
     """
     stated = tuple(row["key"] for row in table("motion_senses") if row["verb"] == verb)
-    if stated:
-        return stated
-    return tuple(
-        sense.key for sense, synset in wordnet().of_lemma(verb) if synset.lexfile in MOTION_FILES
-    )[:1]
+    found = (sense.key for sense, each in wordnet().of_lemma(verb) if each.lexfile in MOTION_FILES)
+    return stated or tuple(found)[:1]
 
 
 def motion_classes(verb: str) -> tuple[str, ...]:
@@ -220,8 +211,8 @@ class LevinClass:
 @cache
 def levin_classes() -> Mapping[str, LevinClass]:
     """Every class by its number, in the book's order."""
-    rows = (
-        LevinClass(
+    return {
+        row["number"]: LevinClass(
             row["number"],
             row["broader"],
             row["title"],
@@ -229,28 +220,13 @@ def levin_classes() -> Mapping[str, LevinClass]:
             tuple(row["verbnet"].split()),
         )
         for row in table("levin")
-    )
-    return MappingProxyType({each.number: each for each in rows})
-
-
-def levin_class(number: str) -> LevinClass:
-    """The class of a number.
-
-    Raises:
-        UnknownNameError: The book has no such class.
-    """
-    known = levin_classes()
-    if number not in known:
-        raise UnknownNameError("Levin class", number, known)
-    return known[number]
+    }
 
 
 def above(number: str) -> Iterator[str]:
     """Numbers of the classes that a class is part of, nearest first."""
-    broader = levin_class(number).broader
-    while broader:
-        yield broader
-        broader = levin_class(broader).broader
+    while number := levin_classes()[number].broader:
+        yield number
 
 
 def book_order(number: str) -> tuple[int, ...]:

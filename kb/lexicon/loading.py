@@ -11,7 +11,6 @@ from pyoxigraph import Literal, NamedNode, Quad, Triple
 from kb.lexicon.links import (
     Claimant,
     PrimitiveWords,
-    SenseLink,
     class_links,
     levin_classes,
     remarks,
@@ -20,7 +19,7 @@ from kb.lexicon.links import (
     thesis_senses,
 )
 from kb.lexicon.verbnet import Frame, Member, Phrase, Predicate, Role, VerbClass
-from kb.lexicon.wordnet import FOLDER, Synset, WordNet, frame_sentence, wordnet
+from kb.lexicon.wordnet import FOLDER, WordNet, frame_sentence, wordnet
 from kb.store import names
 from kb.store.statements import LABEL, TYPE, PropertyValues, StatementIndex, terms
 from kb.store.stores import EmbeddedStore, Store
@@ -43,34 +42,11 @@ SHIPPED = ("wordnet-3.1-verbs.tsv.gz", "wordnet-frames.tsv", "levin.tsv", "thesi
 Triples: TypeAlias = Iterator[Triple]
 
 
-def graph_of(source: str) -> NamedNode:
-    """The named graph of a source of words: ``wordnet``, ``levin``, ``verbnet`` or ``links``."""
-    return NamedNode(f"{DATA}graph/lexicon/{source}")
-
-
-def synset_node(offset: str) -> NamedNode:
-    """A synset of WordNet 3.1's verbs."""
-    return NamedNode(f"{DATA}synset/{offset}-v")
-
-
-def sense_node(key: str) -> NamedNode:
-    """A sense by its key."""
-    return NamedNode(f"{DATA}sense/{quote(key, safe='')}")
-
-
-def verb_node(lemma: str) -> NamedNode:
-    """A verb as a word."""
-    return NamedNode(f"{DATA}verb/{quote(lemma.replace(' ', '_'), safe='')}")
-
-
-def levin_node(number: str) -> NamedNode:
-    """A class of Levin's."""
-    return NamedNode(f"{DATA}levin/{number}")
-
-
-def verbnet_node(name: str) -> NamedNode:
-    """A class of VerbNet."""
-    return NamedNode(f"{DATA}verbnet/{quote(name, safe='')}")
+def node(folder: str, word: str) -> NamedNode:
+    """A synset, sense, verb, or class of Levin's or VerbNet's, by offset, key, lemma or name."""
+    if folder == "synset":
+        word = f"{word}-v"
+    return NamedNode(f"{DATA}{folder}/{quote(word.replace(' ', '_'), safe='')}")
 
 
 def _english(text: str) -> Literal:
@@ -112,12 +88,17 @@ def load_verbnet(store: Store, classes: Sequence[VerbClass], words: WordNet) -> 
         Whether anything was loaded; the same classes stay.
     """
     digest = hashlib.sha256(repr(classes).encode()).hexdigest()
-    return _load(store, "verbnet", digest, lambda: verbnet_triples(classes, words))
+    return _load(
+        store,
+        "verbnet",
+        digest,
+        lambda: (t for top in classes for each in top.family for t in _verbnet_class(each, words)),
+    )
 
 
 def _load(store: Store, source: str, digest: str, triples: Callable[[], Iterable[Triple]]) -> bool:
     """Fill a source's graph, its mark last: a graph without it is not whole, and is made again."""
-    graph = graph_of(source)
+    graph = names.GRAPHS[source]
     mark = Triple(graph, CAPAR.sha256, Literal(digest))
     if store.ask(f"ASK {{ GRAPH {graph} {{ {mark} }} }}").boolean:
         return False
@@ -136,35 +117,30 @@ def wordnet_triples(words: WordNet) -> Triples:
     """Every verb of a WordNet: words, senses and synsets of OntoLex, with their ILI."""
     for lemma in words.lemmas:
         label = {LABEL: _english(lemma.replace("_", " "))}
-        yield from _stated(verb_node(lemma), NamedNode(ONTOLEX + "Word"), label)
+        yield from _stated(node("verb", lemma), NamedNode(ONTOLEX + "Word"), label)
     sentences = {str(each): Literal(frame_sentence(str(each))) for each in range(1, 36)}
-    for synset in words:
-        yield from synset_triples(synset, sentences)
-
-
-def synset_triples(value: Synset, sentences: dict[str, Literal]) -> Triples:
-    """A synset with its senses."""
-    node = synset_node(value.offset)
-    frames = sorted({each.partition(":")[0] for each in value.frames})
-    properties: PropertyValues = {
-        DEFINITION: _english(value.gloss),
-        CAPAR.synsetOffset: value.offset,
-        CAPAR.lexicographerFile: value.lexfile,
-        CLOSE_MATCH: NamedNode(f"https://en-word.net/id/oewn-{value.offset}-v"),
-        NamedNode(WN + "ili"): NamedNode(PREFIXES["ili"] + value.ili) if value.ili else None,
-        NamedNode(WN + "hypernym"): [synset_node(above) for above in value.hypernyms],
-        CAPAR.genericSentence: [sentences[frame] for frame in frames],
-    }
-    yield from _stated(node, NamedNode(ONTOLEX + "LexicalConcept"), properties)
-    for sense in value.senses:
-        own = sense_node(sense.key)
-        yield Triple(verb_node(sense.lemma.lower()), NamedNode(ONTOLEX + "sense"), own)
-        of_sense: PropertyValues = {
-            NamedNode(ONTOLEX + "isLexicalizedSenseOf"): node,
-            CAPAR.senseKey: sense.key,
-            CAPAR.senseNumber: sense.number,
+    for value in words:
+        synset = node("synset", value.offset)
+        frames = sorted({each.partition(":")[0] for each in value.frames})
+        properties: PropertyValues = {
+            DEFINITION: _english(value.gloss),
+            CAPAR.synsetOffset: value.offset,
+            CAPAR.lexicographerFile: value.lexfile,
+            CLOSE_MATCH: NamedNode(f"https://en-word.net/id/oewn-{value.offset}-v"),
+            NamedNode(WN + "ili"): NamedNode(PREFIXES["ili"] + value.ili) if value.ili else None,
+            NamedNode(WN + "hypernym"): [node("synset", above) for above in value.hypernyms],
+            CAPAR.genericSentence: [sentences[frame] for frame in frames],
         }
-        yield from _stated(own, NamedNode(ONTOLEX + "LexicalSense"), of_sense)
+        yield from _stated(synset, NamedNode(ONTOLEX + "LexicalConcept"), properties)
+        for sense in value.senses:
+            own = node("sense", sense.key)
+            yield Triple(node("verb", sense.lemma.lower()), NamedNode(ONTOLEX + "sense"), own)
+            of_sense: PropertyValues = {
+                NamedNode(ONTOLEX + "isLexicalizedSenseOf"): synset,
+                CAPAR.senseKey: sense.key,
+                CAPAR.senseNumber: sense.number,
+            }
+            yield from _stated(own, NamedNode(ONTOLEX + "LexicalSense"), of_sense)
 
 
 def levin_triples() -> Triples:
@@ -173,11 +149,11 @@ def levin_triples() -> Triples:
         of_class: PropertyValues = {
             LABEL: _english(levin.title),
             NOTATION: levin.number,
-            BROADER: levin_node(levin.broader) if levin.broader else None,
+            BROADER: node("levin", levin.broader) if levin.broader else None,
             CAPAR.classSize: levin.size or None,
-            CLOSE_MATCH: [verbnet_node(name) for name in levin.verbnet],
+            CLOSE_MATCH: [node("verbnet", name) for name in levin.verbnet],
         }
-        yield from _stated(levin_node(levin.number), CAPAR.LevinClass, of_class)
+        yield from _stated(node("levin", levin.number), CAPAR.LevinClass, of_class)
     for index, claim in enumerate(thesis_claims()):
         of_claim: PropertyValues = {
             CAPAR.claimedBy: Claimant.THESIS.value,
@@ -186,110 +162,100 @@ def levin_triples() -> Triples:
             CAPAR.section: Literal(claim.section),
             CAPAR.quote: Literal(claim.quote),
             CAPAR.printedClass: claim.said,
-            CAPAR.levinClass: levin_node(claim.levin) if claim.levin else None,
+            CAPAR.levinClass: node("levin", claim.levin) if claim.levin else None,
             CAPAR.claimedVerb: [Literal(verb) for verb in claim.verbs],
         }
-        yield from _stated(NamedNode(f"{DATA}claim/{index}"), CAPAR.CapabilityClaim, of_claim)
+        yield from _stated(node("claim", str(index)), CAPAR.CapabilityClaim, of_claim)
     for index, remark in enumerate(remarks()):
         of_remark: PropertyValues = {
             COMMENT: _english(remark.text),
             CAPAR.claimedVerb: Literal(remark.verb),
-            CAPAR.levinClass: levin_node(remark.levin),
+            CAPAR.levinClass: node("levin", remark.levin),
         }
-        yield from _stated(NamedNode(f"{DATA}remark/{index}"), CAPAR.LexicalRemark, of_remark)
+        yield from _stated(node("remark", str(index)), CAPAR.LexicalRemark, of_remark)
 
 
 def link_triples(primitives: Iterable[PrimitiveWords]) -> Triples:
     """How primitives link to senses and classes, by the thesis and by us."""
     words = list(primitives)
     for link in (*thesis_senses(), *(link for each in words for link in sense_links(each))):
-        yield from _sense_link(link)
+        action, sense = names.shared("action", link.primitive), node("sense", link.key)
+        yield Triple(sense, NamedNode(ONTOLEX + "reference"), action)
+        of_sense: PropertyValues = {
+            CAPAR.linkedAction: action,
+            CAPAR.linkedSense: sense,
+            CAPAR.claimedBy: link.claimed_by.value,
+            CAPAR.oldSenseNumber: link.number_1_6 or None,
+            COMMENT: _english(link.remark) if link.remark else None,
+        }
+        own = names.shared("link", link.claimed_by.value, link.primitive, link.key)
+        yield from _stated(own, CAPAR.LexicalLink, of_sense)
     for each in words:
         numbers, claimant = class_links(each)
         for number in numbers:
-            properties: PropertyValues = {
+            of_class: PropertyValues = {
                 CAPAR.linkedAction: names.shared("action", each.name),
-                CAPAR.levinClass: levin_node(number),
+                CAPAR.levinClass: node("levin", number),
                 CAPAR.claimedBy: claimant.value,
             }
-            node = names.shared("link", claimant.value, each.name, number)
-            yield from _stated(node, CAPAR.LexicalLink, properties)
-
-
-def _sense_link(link: SenseLink) -> Triples:
-    action, sense = names.shared("action", link.primitive), sense_node(link.key)
-    yield Triple(sense, NamedNode(ONTOLEX + "reference"), action)
-    properties: PropertyValues = {
-        CAPAR.linkedAction: action,
-        CAPAR.linkedSense: sense,
-        CAPAR.claimedBy: link.claimed_by.value,
-        CAPAR.oldSenseNumber: link.number_1_6 or None,
-        COMMENT: _english(link.remark) if link.remark else None,
-    }
-    node = names.shared("link", link.claimed_by.value, link.primitive, link.key)
-    yield from _stated(node, CAPAR.LexicalLink, properties)
-
-
-def verbnet_triples(classes: Iterable[VerbClass], words: WordNet) -> Triples:
-    """Every class with what it states itself; senses where that WordNet has them."""
-    for top in classes:
-        for each in top.family:
-            yield from _verbnet_class(each, words)
+            own = names.shared("link", claimant.value, each.name, number)
+            yield from _stated(own, CAPAR.LexicalLink, of_class)
 
 
 def _verbnet_class(value: VerbClass, words: WordNet) -> Triples:
-    node = verbnet_node(value.id)
-    parts = {
-        CAPAR.classMember: [names.part(node, "member", at) for at in range(len(value.members))],
-        CAPAR.thematicRole: [names.part(node, "role", at) for at in range(len(value.roles))],
-        CAPAR.verbFrame: [names.part(node, "frame", at) for at in range(len(value.frames))],
-    }
+    """A class with what it states itself; senses where that WordNet has them."""
+    whole = node("verbnet", value.id)
+
+    def parts(of: NamedNode, word: str, values: Sequence[object]) -> list[NamedNode]:
+        return [names.part(of, word, at) for at in range(len(values))]
+
+    members = parts(whole, "member", value.members)
+    roles = parts(whole, "role", value.roles)
+    frames = parts(whole, "frame", value.frames)
     properties: PropertyValues = {
         LABEL: value.id,
         NOTATION: value.number,
-        BROADER: verbnet_node(value.parent) if value.parent else None,
-        CAPAR.levinClass: levin_node(value.levin) if value.levin in levin_classes() else None,
-        **parts,
+        BROADER: node("verbnet", value.parent) if value.parent else None,
+        CAPAR.levinClass: node("levin", value.levin) if value.levin in levin_classes() else None,
+        CAPAR.classMember: members,
+        CAPAR.thematicRole: roles,
+        CAPAR.verbFrame: frames,
     }
-    yield from _stated(node, CAPAR.VerbNetClass, properties)
-    for own, member in zip(parts[CAPAR.classMember], value.members, strict=True):
+    yield from _stated(whole, CAPAR.VerbNetClass, properties)
+    for own, member in zip(members, value.members, strict=True):
         of_member: PropertyValues = {
             CAPAR.lemma: member.lemma.replace("_", " "),
-            CAPAR.memberVerb: verb_node(member.lemma),
+            CAPAR.memberVerb: node("verb", member.lemma),
             CAPAR.senseKey: [Literal(key) for key in member.keys],
-            CAPAR.memberSense: [sense_node(key) for key in member.keys if key in words],
+            CAPAR.memberSense: [node("sense", key) for key in member.keys if key in words],
         }
         yield from _stated(own, CAPAR.ClassMember, of_member)
-    for index, (own, role) in enumerate(zip(parts[CAPAR.thematicRole], value.roles, strict=True)):
+    for index, (own, role) in enumerate(zip(roles, value.roles, strict=True)):
         of_role: PropertyValues = {
             LABEL: role.name,
             CAPAR.index: index,
             CAPAR.restriction: [Literal(each) for each in role.restrictions],
         }
         yield from _stated(own, CAPAR.ThematicRole, of_role)
-    for index, (own, frame) in enumerate(zip(parts[CAPAR.verbFrame], value.frames, strict=True)):
-        yield from _verbnet_frame(own, index, frame)
-
-
-def _verbnet_frame(own: NamedNode, index: int, frame: Frame) -> Triples:
-    syntax = "; ".join(f"{each.kind} {each.value}".strip() for each in frame.syntax)
-    meanings = [names.part(own, "predicate", number) for number in range(len(frame.semantics))]
-    properties: PropertyValues = {
-        CAPAR.index: index,
-        CAPAR.pattern: Literal(frame.pattern),
-        CAPAR.example: Literal(frame.example),
-        CAPAR.syntax: Literal(syntax),
-        CAPAR.semanticPredicate: meanings,
-    }
-    yield from _stated(own, CAPAR.VerbFrame, properties)
-    for number, (node, predicate) in enumerate(zip(meanings, frame.semantics, strict=True)):
-        of_predicate: PropertyValues = {
-            CAPAR.index: number,
-            CAPAR.predicateName: Literal(predicate.name),
-            CAPAR.holds: predicate.holds,
-            CAPAR.arguments: Literal("|".join(predicate.arguments)),
+    for index, (own, frame) in enumerate(zip(frames, value.frames, strict=True)):
+        meanings = parts(own, "predicate", frame.semantics)
+        syntax = "; ".join(f"{each.kind} {each.value}".strip() for each in frame.syntax)
+        of_frame: PropertyValues = {
+            CAPAR.index: index,
+            CAPAR.pattern: Literal(frame.pattern),
+            CAPAR.example: Literal(frame.example),
+            CAPAR.syntax: Literal(syntax),
+            CAPAR.semanticPredicate: meanings,
         }
-        yield from _stated(node, CAPAR.SemanticPredicate, of_predicate)
+        yield from _stated(own, CAPAR.VerbFrame, of_frame)
+        for number, (meaning, one) in enumerate(zip(meanings, frame.semantics, strict=True)):
+            of_predicate: PropertyValues = {
+                CAPAR.index: number,
+                CAPAR.predicateName: Literal(one.name),
+                CAPAR.holds: one.holds,
+                CAPAR.arguments: Literal("|".join(one.arguments)),
+            }
+            yield from _stated(meaning, CAPAR.SemanticPredicate, of_predicate)
 
 
 # Out of a store
@@ -297,7 +263,7 @@ def _verbnet_frame(own: NamedNode, index: int, frame: Frame) -> Triples:
 
 def has_source(store: Store, source: str) -> bool:
     """Whether a source's graph is there, and whole."""
-    graph = graph_of(source)
+    graph = names.GRAPHS[source]
     asked = f"ASK {{ GRAPH {graph} {{ {graph} {CAPAR.sha256} ?digest }} }}"
     return bool(store.ask(asked).boolean)
 
@@ -309,18 +275,20 @@ def verbnet_of(store: Store, lemma: str) -> tuple[VerbClass, ...]:
     the classes that it refines.
     """
     path = f"{CAPAR.classMember}/{CAPAR.memberVerb}"
-    return _read_classes(store, f"?class {path} {verb_node(lemma.lower())}")
+    return _read_classes(store, f"?class {path} {node('verb', lemma.lower())}")
 
 
 def verbnet_class_of(store: Store, levin: str) -> tuple[VerbClass, ...]:
     """VerbNet's classes of a Levin class, with the subclasses beside them."""
-    return _read_classes(store, f"?class {CAPAR.levinClass} {levin_node(levin)}")
+    return _read_classes(store, f"?class {CAPAR.levinClass} {node('levin', levin)}")
 
 
 def every_verbnet_member(store: Store) -> tuple[VerbClass, ...]:
     """VerbNet's classes with their members alone, by name."""
     asked = f"?class {LABEL} ?id ; {CAPAR.classMember}/{CAPAR.lemma} ?lemma"
-    rows = store.ask(f"SELECT ?id ?lemma {{ GRAPH {graph_of('verbnet')} {{ {asked} }} }}").texts()
+    rows = store.ask(
+        f"SELECT ?id ?lemma {{ GRAPH {names.GRAPHS['verbnet']} {{ {asked} }} }}"
+    ).texts()
     found: dict[str, set[str]] = {}
     for name, lemma in rows:
         found.setdefault(name, set()).add(lemma)
@@ -332,7 +300,7 @@ def every_verbnet_member(store: Store) -> tuple[VerbClass, ...]:
 
 def _read_classes(store: Store, pattern: str) -> tuple[VerbClass, ...]:
     """The classes that a pattern finds and all that they refine, sorted by name."""
-    graph = graph_of("verbnet")
+    graph = names.GRAPHS["verbnet"]
     rows = store.ask(
         f"SELECT DISTINCT ?up {{ GRAPH {graph} {{ {pattern} . ?class {BROADER}* ?up }} }}"
     )
@@ -355,37 +323,34 @@ def _read_classes(store: Store, pattern: str) -> tuple[VerbClass, ...]:
     return tuple(sorted((_class_of(index, each) for each in nodes), key=lambda each: each.id))
 
 
-def _class_of(of: StatementIndex, node: NamedNode) -> VerbClass:
-    parent = of.one(node, BROADER)
-    members = sorted(of.all(node, CAPAR.classMember), key=lambda each: of.text(each, CAPAR.lemma))
-    return VerbClass(
-        of.text(node, LABEL),
-        of.text(parent, LABEL) if parent else "",
-        tuple(
-            Member(of.text(each, CAPAR.lemma).replace(" ", "_"), of.texts(each, CAPAR.senseKey))
-            for each in members
-        ),
-        tuple(
-            Role(of.text(each, LABEL), of.texts(each, CAPAR.restriction))
-            for each in of.ordered(node, CAPAR.thematicRole, by=CAPAR.index)
-        ),
-        tuple(_frame_of(of, e) for e in of.ordered(node, CAPAR.verbFrame, by=CAPAR.index)),
-        (),
+def _class_of(of: StatementIndex, whole: NamedNode) -> VerbClass:
+    parent = of.one(whole, BROADER)
+    members = sorted(
+        Member(of.text(each, CAPAR.lemma).replace(" ", "_"), of.texts(each, CAPAR.senseKey))
+        for each in of.all(whole, CAPAR.classMember)
     )
-
-
-def _frame_of(of: StatementIndex, node: NamedNode) -> Frame:
-    phrases = [each.partition(" ") for each in of.text(node, CAPAR.syntax).split("; ") if each]
-    return Frame(
-        of.text(node, CAPAR.pattern),
-        of.text(node, CAPAR.example),
-        tuple(Phrase(kind, value) for kind, _, value in phrases),
-        tuple(
+    roles = [
+        Role(of.text(each, LABEL), of.texts(each, CAPAR.restriction))
+        for each in of.ordered(whole, CAPAR.thematicRole, by=CAPAR.index)
+    ]
+    frames = []
+    for each in of.ordered(whole, CAPAR.verbFrame, by=CAPAR.index):
+        phrases = (one.partition(" ") for one in of.text(each, CAPAR.syntax).split("; ") if one)
+        semantics = [
             Predicate(
-                of.text(each, CAPAR.predicateName),
-                tuple(of.text(each, CAPAR.arguments).split("|")),
-                holds=of.value(each, CAPAR.holds) is True,
+                of.text(one, CAPAR.predicateName),
+                tuple(of.text(one, CAPAR.arguments).split("|")),
+                holds=of.value(one, CAPAR.holds) is True,
             )
-            for each in of.ordered(node, CAPAR.semanticPredicate, by=CAPAR.index)
-        ),
-    )
+            for one in of.ordered(each, CAPAR.semanticPredicate, by=CAPAR.index)
+        ]
+        frames.append(
+            Frame(
+                of.text(each, CAPAR.pattern),
+                of.text(each, CAPAR.example),
+                tuple(Phrase(kind, value) for kind, _, value in phrases),
+                tuple(semantics),
+            )
+        )
+    above = of.text(parent, LABEL) if parent else ""
+    return VerbClass(of.text(whole, LABEL), above, tuple(members), tuple(roles), tuple(frames), ())

@@ -1,5 +1,7 @@
 """VerbNet 3.x as values, read from the XML files of a user's copy."""
 
+import re
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,8 +49,8 @@ class Predicate:
 
     @property
     def event(self) -> str:
-        """The event in which it holds, or empty."""
-        return next((each for each in self.arguments if is_event(each)), "")
+        """The event in which it holds: ``e1``, ``ë2`` or ``E``; or empty."""
+        return next((each for each in self.arguments if re.fullmatch(r"[eëE]\d*", each)), "")
 
     def __str__(self) -> str:
         """As VerbNet prints it."""
@@ -111,25 +113,7 @@ class VerbClass:
             yield from subclass.family
 
 
-def is_event(argument: str) -> bool:
-    """Whether an argument is one of VerbNet's event variables: ``e1``, ``ë2``, ``E``."""
-    return argument[:1] in {"e", "ë", "E"} and (argument[1:].isdigit() or len(argument) == 1)
-
-
 REMEDY = "VerbNet 3.x holds one class a file, with <VNCLASS ID=...> at its top."
-
-
-@dataclass(frozen=True, slots=True)
-class KeyRate:
-    """How many of the members' WordNet keys stand in WordNet 3.1."""
-
-    keys: int
-    resolved: int
-
-    @property
-    def share(self) -> float:
-        """Resolved keys over all keys; one if there are none."""
-        return self.resolved / self.keys if self.keys else 1.0
 
 
 def read_verbnet(folder: Path) -> tuple[VerbClass, ...]:
@@ -144,7 +128,10 @@ def read_verbnet(folder: Path) -> tuple[VerbClass, ...]:
     if not paths:
         raise FileError(folder, "holds no XML file;", "name the one that holds VerbNet's.")
     classes = tuple(read_class(path) for path in paths)
-    _check_distinct(folder, classes)
+    names = Counter(each.id for top in classes for each in top.family)
+    (name, times), *_ = names.most_common(1)
+    if times > 1:
+        raise FileError(folder, f"has class {name} twice;", "keep one copy of each class.")
     return classes
 
 
@@ -165,35 +152,29 @@ def read_class(path: Path) -> VerbClass:
     return _verb_class(root, "", path)
 
 
-def key_rate(classes: Iterable[VerbClass], words: WordNet) -> KeyRate:
-    """How many of the classes' member keys are verb senses of that WordNet."""
-    keys = [
-        key
-        for top in classes
-        for each in top.family
-        for member in each.members
-        for key in member.keys
-    ]
-    return KeyRate(len(keys), sum(key in words for key in keys))
-
-
-def _check_distinct(folder: Path, classes: tuple[VerbClass, ...]) -> None:
-    names = [each.id for top in classes for each in top.family]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise FileError(folder, f"has class {twice[0]} twice;", "keep one copy of each class.")
+def key_rate(classes: Iterable[VerbClass], words: WordNet) -> tuple[int, int]:
+    """How many WordNet keys the classes' members have, and how many of them that WordNet has."""
+    family = [each for top in classes for each in top.family]
+    keys = [key for each in family for member in each.members for key in member.keys]
+    return len(keys), sum(key in words for key in keys)
 
 
 def _verb_class(element: "Element", parent: str, path: Path) -> VerbClass:
     name = _attribute(element, "ID", path)
-    below = element.findall("SUBCLASSES/VNSUBCLASS")
+    members = []
+    for each in element.findall("MEMBERS/MEMBER"):
+        keys = (normal_key(key) for key in each.get("wn", "").split())
+        members.append(Member(_attribute(each, "name", path), tuple(k for k in keys if "%" in k)))
     return VerbClass(
         name,
         parent,
-        tuple(_member(each, path) for each in element.findall("MEMBERS/MEMBER")),
-        tuple(_role(each, path) for each in element.findall("THEMROLES/THEMROLE")),
+        tuple(members),
+        tuple(
+            Role(_attribute(each, "type", path), _restrictions(each.find("SELRESTRS")))
+            for each in element.findall("THEMROLES/THEMROLE")
+        ),
         tuple(_frame(each, path) for each in element.findall("FRAMES/FRAME")),
-        tuple(_verb_class(each, name, path) for each in below),
+        tuple(_verb_class(each, name, path) for each in element.findall("SUBCLASSES/VNSUBCLASS")),
     )
 
 
@@ -202,15 +183,6 @@ def _attribute(element: "Element", name: str, path: Path) -> str:
     if not value:
         raise FileError(path, f"has a <{element.tag}> without {name};", REMEDY)
     return value.strip()
-
-
-def _member(element: "Element", path: Path) -> Member:
-    keys = (normal_key(key) for key in element.get("wn", "").split())
-    return Member(_attribute(element, "name", path), tuple(key for key in keys if "%" in key))
-
-
-def _role(element: "Element", path: Path) -> Role:
-    return Role(_attribute(element, "type", path), _restrictions(element.find("SELRESTRS")))
 
 
 def _restrictions(element: "Element | None") -> tuple[str, ...]:
@@ -224,22 +196,21 @@ def _restrictions(element: "Element | None") -> tuple[str, ...]:
 
 def _frame(element: "Element", path: Path) -> Frame:
     description = element.find("DESCRIPTION")
-    pattern = _attribute(description, "primary", path) if description is not None else ""
-    example = " ".join((element.findtext("EXAMPLES/EXAMPLE") or "").split())
+    syntax = []
+    for each in element.findall("SYNTAX/*"):
+        stated = " ".join(each.get("value", "").split())
+        restrictions = "&".join(_restrictions(each.find("SELRESTRS")))
+        syntax.append(Phrase(each.tag, stated or restrictions))
     return Frame(
-        pattern,
-        example,
-        tuple(_phrase(each) for each in element.findall("SYNTAX/*")),
-        tuple(_predicate(each, path) for each in element.findall("SEMANTICS/PRED")),
+        _attribute(description, "primary", path) if description is not None else "",
+        " ".join((element.findtext("EXAMPLES/EXAMPLE") or "").split()),
+        tuple(syntax),
+        tuple(
+            Predicate(
+                _attribute(each, "value", path),
+                tuple(_attribute(one, "value", path) for one in each.findall("ARGS/ARG")),
+                holds=each.get("bool") != "!",
+            )
+            for each in element.findall("SEMANTICS/PRED")
+        ),
     )
-
-
-def _phrase(element: "Element") -> Phrase:
-    stated = " ".join(element.get("value", "").split())
-    return Phrase(element.tag, stated or "&".join(_restrictions(element.find("SELRESTRS"))))
-
-
-def _predicate(element: "Element", path: Path) -> Predicate:
-    arguments = (_attribute(each, "value", path) for each in element.findall("ARGS/ARG"))
-    name = _attribute(element, "value", path)
-    return Predicate(name, tuple(arguments), holds=element.get("bool") != "!")

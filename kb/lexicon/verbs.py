@@ -4,7 +4,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import TypeAlias
 
 from capar.model.errors import UnknownNameError
 from capar.model.par import FeatureSet
@@ -23,7 +22,6 @@ from kb.lexicon.links import (
     sense_links,
     thesis_claims,
 )
-from kb.lexicon.links import levin_classes as known_classes
 from kb.lexicon.verbnet import Frame, Predicate, VerbClass
 from kb.lexicon.wordnet import Sense, Synset, table, wordnet
 from kb.store.sparql import stored
@@ -86,19 +84,43 @@ def total(seen: Iterable[Seen]) -> int:
     return sum(each.count for each in seen)
 
 
-MOST = 5
-"""How many names near a wrong one are listed."""
+def _near(word: str, known: Iterable[str]) -> str:
+    """A clause that goes on from a name that there is not, with the five nearest ones."""
+    near = [each.replace("_", " ") for each in get_close_matches(word, list(known), n=5)]
+    if not near:
+        return ", nor one near it"
+    return f"; the nearest {'are' if len(near) > 1 else 'is'} {', '.join(near)}"
 
 
-def doubts(verb: str, levin_classes: Sequence[str], senses: Sequence[str]) -> tuple[str, ...]:
+def _near_verbs(verb: str) -> str:
+    return _near(verb.strip().lower().replace(" ", "_"), wordnet().lemmas)
+
+
+def doubts(verb: str, levin: Sequence[str], senses: Sequence[str]) -> tuple[str, ...]:
     """What is stated of a verb and not known here, in a clause each, with what is near it.
 
     Args:
         verb: As people write it; may be empty.
-        levin_classes: Numbers of Levin's classes.
+        levin: Numbers of Levin's classes.
         senses: Numbers of the verb's senses in WordNet 3.1, or sense keys.
     """
-    return tuple(_doubts(verb, levin_classes, senses))
+    found = []
+    known = wordnet().of_lemma(verb)
+    if verb and not known:
+        found.append(f"WordNet has no verb {verb!r}{_near_verbs(verb)}")
+    for number in levin:
+        if number not in levin_classes():
+            found.append(f"Levin has no class {number!r}{_near(number, levin_classes())}")
+    for each in senses:
+        if sense_key(verb, each) in wordnet():
+            continue
+        if each.isdigit():
+            has = f"; it has 1 to {len(known)}" if known else ""
+            found.append(f"WordNet has no sense {each} of {verb!r}{has}")
+        else:
+            near = _near(each, [sense.key for sense, _ in known])
+            found.append(f"WordNet has no verb sense {each!r}{near}")
+    return tuple(found)
 
 
 def doubts_of(words: Iterable[PrimitiveWords]) -> tuple[str, ...]:
@@ -109,39 +131,6 @@ def doubts_of(words: Iterable[PrimitiveWords]) -> tuple[str, ...]:
         for index, verb in enumerate(each.verbs or ("",))
         for doubt in (doubts(verb, (), ()) if index else doubts(verb, each.levin, each.senses))
     )
-
-
-def nearest_verbs(verb: str) -> tuple[str, ...]:
-    """The verbs of WordNet that are written most like one that it lacks."""
-    word = verb.strip().lower().replace(" ", "_")
-    close = get_close_matches(word, wordnet().lemmas, n=MOST)
-    return tuple(each.replace("_", " ") for each in close)
-
-
-def the_nearest(names: Sequence[str]) -> str:
-    """A clause that goes on from a name that there is not, with those near it."""
-    if not names:
-        return ", nor one near it"
-    return f"; the nearest {'are' if len(names) > 1 else 'is'} {', '.join(names)}"
-
-
-def _doubts(verb: str, classes: Sequence[str], senses: Sequence[str]) -> Iterator[str]:
-    known = wordnet().of_lemma(verb)
-    if verb and not known:
-        yield f"WordNet has no verb {verb!r}{the_nearest(nearest_verbs(verb))}"
-    for number in classes:
-        if number not in known_classes():
-            close = get_close_matches(number, known_classes(), n=MOST)
-            yield f"Levin has no class {number!r}{the_nearest(close)}"
-    for each in senses:
-        if sense_key(verb, each) in wordnet():
-            continue
-        if each.isdigit():
-            has = f"; it has 1 to {len(known)}" if known else ""
-            yield f"WordNet has no sense {each} of {verb!r}{has}"
-        else:
-            close = get_close_matches(each, [sense.key for sense, _ in known], n=MOST)
-            yield f"WordNet has no verb sense {each!r}{the_nearest(close)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,9 +208,8 @@ class UnknownVerbError(UnknownNameError):
     """A verb that there is not; its message lists only the nearest known ones."""
 
     def __init__(self, verb: str) -> None:
-        near = nearest_verbs(verb)
-        super().__init__("verb", verb, near)
-        self.args = (f"no verb {verb!r} is known{the_nearest(near)}.",)
+        super().__init__("verb", verb, ())
+        self.args = (f"no verb {verb!r} is known{_near_verbs(verb)}.",)
 
 
 def about(
@@ -263,53 +251,40 @@ def about(
 
 
 def _classes(verb: str, verbnet: Sequence[VerbClass]) -> tuple[ClassOfVerb, ...]:
+    """Classes that list the verb, with the roles and frames that each inherits."""
     by_name = {each.id: each for each in verbnet}
     lemma = verb.replace(" ", "_")
-    found = [
-        _verbnet_class(each, by_name)
-        for each in verbnet
-        if any(member.lemma == lemma for member in each.members)
-    ]
+    found = []
+    for each in verbnet:
+        if all(member.lemma != lemma for member in each.members):
+            continue
+        line = [each]
+        while line[-1].parent in by_name:
+            line.append(by_name[line[-1].parent])
+        roles = dict.fromkeys(role.name for one in reversed(line) for role in one.roles)
+        frame = next((frame for one in line for frame in one.frames), None)
+        found.append(ClassOfVerb(levin_classes().get(each.levin), each.id, tuple(roles), frame))
     known = {each.levin.number for each in found if each.levin}
     extra = sorted(set(motion_classes(verb)) - known, key=book_order)
     return (*found, *(ClassOfVerb(levin_classes()[each], "", (), None) for each in extra))
 
 
-def _verbnet_class(each: VerbClass, by_name: Mapping[str, VerbClass]) -> ClassOfVerb:
-    """A class with the roles and frames that it inherits."""
-    line = [each]
-    while line[-1].parent in by_name:
-        line.append(by_name[line[-1].parent])
-    roles: dict[str, None] = {}
-    for one in reversed(line):
-        roles.update(dict.fromkeys(role.name for role in one.roles))
-    frames = [frame for one in line for frame in one.frames]
-    levin = levin_classes().get(each.levin)
-    return ClassOfVerb(levin, each.id, tuple(roles), frames[0] if frames else None)
-
-
 def _neighbours(keys: Sequence[str], keys_of: Mapping[str, Sequence[str]]) -> tuple[Neighbour, ...]:
     """What stands one step up and one step down from the verb's senses as a motion."""
-    found: list[Neighbour] = []
-    for key in keys:
-        synset = wordnet().of_key(key)
+    synsets: list[tuple[str, Synset]] = []
+    for synset in map(wordnet().of_key, keys):
         steps = wordnet().steps_above(synset)
-        up = [each for each, step in steps.items() if step == 1]
-        found += [_neighbour("is a kind of", each, keys_of) for each in up]
-        down = wordnet().directly_below(synset)
-        found += [_neighbour("has the kind", each, keys_of) for each in down]
+        synsets += [("is a kind of", each) for each, step in steps.items() if step == 1]
+        synsets += [("has the kind", each) for each in wordnet().directly_below(synset)]
+    found = []
+    for relation, synset in synsets:
+        primitives = sorted(
+            name for name, own in keys_of.items() if synset in map(wordnet().of_key, own)
+        )
+        found.append(Neighbour(relation, synset.lemmas, synset.definition, tuple(primitives)))
     with_primitive = [each for each in found if each.primitives or each.relation == "is a kind of"]
     others = [each for each in found if each not in with_primitive]
     return tuple(dict.fromkeys([*with_primitive, *others[: max(0, 6 - len(with_primitive))]]))
-
-
-def _neighbour(relation: str, synset: Synset, keys_of: Mapping[str, Sequence[str]]) -> Neighbour:
-    primitives = sorted(
-        name
-        for name, keys in keys_of.items()
-        if any(wordnet().of_key(key) == synset for key in keys)
-    )
-    return Neighbour(relation, synset.lemmas, synset.definition, tuple(primitives))
 
 
 def kinds(verb: str, keys_of: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
@@ -320,15 +295,13 @@ def kinds(verb: str, keys_of: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
     """
     if not wordnet().of_lemma(verb):
         raise UnknownVerbError(verb)
-    tops = [wordnet().of_key(key) for key in motion_senses(verb)]
-    return tuple(
-        sorted(name for name, keys in keys_of.items() if any(_is_kind(key, tops) for key in keys))
-    )
+    tops = {wordnet().of_key(key) for key in motion_senses(verb)}
 
+    def is_kind(key: str) -> bool:
+        synset = wordnet().of_key(key)
+        return not tops.isdisjoint([synset, *wordnet().steps_above(synset)])
 
-def _is_kind(key: str, tops: Sequence[Synset]) -> bool:
-    synset = wordnet().of_key(key)
-    return synset in tops or any(each in tops for each in wordnet().what_it_is(synset))
+    return tuple(sorted(name for name, keys in keys_of.items() if any(map(is_kind, keys))))
 
 
 def keys_of_primitives(words: Iterable[PrimitiveWords]) -> dict[str, tuple[str, ...]]:
@@ -368,17 +341,24 @@ class Fit:
     """The primitive or the class of VerbNet that the verb is from."""
 
 
-_Demand: TypeAlias = tuple[bool, str]
-"""Whether a segment meets what a frame's predicate says, and that in words."""
-
-
 def fitting(
     seen: SegmentFeatures, words: Sequence[PrimitiveWords], classes: Iterable[VerbClass] = ()
 ) -> tuple[Fit, ...]:
     """Verbs that fit a segment, best first; each verb once, with its best class."""
     named = {each.name: each for each in words}
-    found = list(_by_rules(seen, named))
-    linked = _linked_classes(seen, named)
+    found = []
+    linked: set[str] = set()
+    for steps, name in enumerate((seen.name, *seen.general)):
+        if name not in named:
+            continue
+        linked.update(class_links(named[name])[0])
+        for verb in named[name].verbs:
+            reason = "the rule that named it" if not steps else f"what {seen.name} specialises"
+            found.append(Fit(verb, 3.0 - 0.1 * steps, (f"{name}: {reason}",), (), name))
+            for synset in map(wordnet().of_key, motion_senses(verb)):
+                same = f"means the same as {verb}: {synset.definition}"
+                score = 2.5 - 0.1 * steps
+                found += [Fit(other, score, (same,), (), name) for other in synset.lemmas]
     for verb_class in classes:
         found += _by_class(seen, verb_class, linked)
     best: dict[str, Fit] = {}
@@ -387,81 +367,49 @@ def fitting(
     return tuple(best.values())
 
 
-def _by_rules(seen: SegmentFeatures, named: Mapping[str, PrimitiveWords]) -> Iterable[Fit]:
-    """The verbs of the rule that named the segment, of their synonyms, and of what is above."""
-    for steps, name in enumerate((seen.name, *seen.general)):
-        if name not in named:
-            continue
-        for verb in named[name].verbs:
-            reason = "the rule that named it" if not steps else f"what {seen.name} specialises"
-            yield Fit(verb, 3.0 - 0.1 * steps, (f"{name}: {reason}",), (), name)
-            for key in motion_senses(verb):
-                synset = wordnet().of_key(key)
-                for other in synset.lemmas:
-                    same = f"means the same as {verb}: {synset.definition}"
-                    yield Fit(other, 2.5 - 0.1 * steps, (same,), (), name)
-
-
-def _linked_classes(seen: SegmentFeatures, named: Mapping[str, PrimitiveWords]) -> set[str]:
-    """Levin classes of the primitive that named the segment, and of those above it."""
-    return {
-        number
-        for name in (seen.name, *seen.general)
-        if name in named
-        for number in class_links(named[name])[0]
-    }
-
-
 def _by_class(seen: SegmentFeatures, each: VerbClass, linked: set[str]) -> Iterable[Fit]:
     """The members of a class by that of its frames that fits best."""
-    judged = [(_demands(frame, seen.features), frame) for frame in each.frames]
-    judged = [(demands, frame) for demands, frame in judged if demands]
+    judged = []
+    for frame in each.frames:
+        events = list(dict.fromkeys(one.event for one in frame.semantics if one.event))
+        demands = [
+            demand
+            for one in frame.semantics
+            if (demand := _demand(one, seen.features, before=one.event in events[:1]
+                                  and one.event != events[-1]))
+        ]  # fmt: skip
+        if demands:
+            share = sum(met for met, _ in demands) / len(demands)
+            judged.append((share, len(demands), demands, frame))
     if not judged:
         return
-    demands, frame = max(judged, key=lambda pair: (_share(pair[0]), len(pair[0])))
-    bonus = 0.5 if each.levin in linked else 0.0
-    score = _share(demands) + bonus + min(len(demands), 4) / 20
-    reasons, against = (
-        tuple(dict.fromkeys(words for met, words in demands if met is wanted))
-        for wanted in (True, False)
-    )
+    share, count, demands, frame = max(judged, key=lambda one: one[:2])
+    score = share + (0.5 if each.levin in linked else 0.0) + min(count, 4) / 20
+    reasons = tuple(dict.fromkeys(words for met, words in demands if met))
+    against = tuple(dict.fromkeys(words for met, words in demands if not met))
     for member in each.members:
         verb = member.lemma.replace("_", " ")
         yield Fit(verb, score, reasons, against, f"{each.id}: {frame.pattern}")
 
 
-def _share(demands: Sequence[_Demand]) -> float:
-    return sum(met for met, _ in demands) / len(demands)
-
-
-def _demands(frame: Frame, features: FeatureSet) -> list[_Demand]:
-    """What a frame's predicates say of a contact, a motion, a force and a goal."""
-    events = list(dict.fromkeys(each.event for each in frame.semantics if each.event))
-    found = []
-    for each in frame.semantics:
-        before = bool(events) and each.event == events[0] and each.event != events[-1]
-        if demand := _demand(each, features, before=before):
-            found.append(demand)
-    return found
-
-
-def _demand(predicate: Predicate, features: FeatureSet, *, before: bool) -> _Demand | None:
+def _demand(predicate: Predicate, features: FeatureSet, *, before: bool) -> tuple[bool, str] | None:
+    """Whether a segment meets what a predicate says of contact, motion, force or goal, in words."""
     roles = {each.lstrip("?") for each in predicate.arguments}
     moves = "1" in features.change_loc
+    met, words = None, ""
     if predicate.name == "contact" and roles & DOERS:
-        touches = (features.rel_start if before else features.rel_end)[:1] == "1"
-        no, when = "" if predicate.holds else "no ", "before" if before else "after"
-        return touches == predicate.holds, f"{predicate} wants {no}contact {when}"
-    if predicate.name in MOTIONS and "Theme" in roles:
-        return moves, f"{predicate} wants the object to move"
-    if predicate.name in MOTIONS and "Agent" in roles:
-        return not moves, f"{predicate} wants only the agent to move"
-    if predicate.name == "has_location" and "Destination" in roles and predicate.holds:
+        met = ((features.rel_start if before else features.rel_end)[:1] == "1") == predicate.holds
+        words = f"{'' if predicate.holds else 'no '}contact {'before' if before else 'after'}"
+    elif predicate.name in MOTIONS and "Theme" in roles:
+        met, words = moves, "the object to move"
+    elif predicate.name in MOTIONS and "Agent" in roles:
+        met, words = not moves, "only the agent to move"
+    elif predicate.name == "has_location" and "Destination" in roles and predicate.holds:
         met = features.count > 1 and features.rel_end.endswith("1")
-        return met, f"{predicate} wants the object at a place afterwards"
-    if predicate.name == "exert_force" or "forceful" in roles:
-        return "1" in features.force, f"{predicate} wants a force"
-    return None
+        words = "the object at a place afterwards"
+    elif predicate.name == "exert_force" or "forceful" in roles:
+        met, words = "1" in features.force, "a force"
+    return None if met is None else (met, f"{predicate} wants {words}")
 
 
 Members = Mapping[str, frozenset[str]]
@@ -489,25 +437,35 @@ def lexical_facts(
         verbs: Further verbs that are asked about.
         classes: Whether classes and their members are stated; else only those verbs are.
     """
-    asked = set(verbs) | (_every_verb(words, members) if classes else set())
+    asked = set(verbs)
+    if classes:
+        asked |= {verb for _, verb in _named_members()}
+        asked |= {verb for each in words for verb in each.verbs}.union(*members.values())
+    shown = [each for each in seen if each.primitive]
     lines = {
-        *_primitives(words),
-        *(_class_facts() if classes else ()),
-        *(_members(members) if classes else ()),
-        *_senses(words, asked),
+        *_primitives(words, asked),
+        *(_classes_stated(members) if classes else ()),
         *(_fact("rule", rule) for rule in rules),
-        *(_fact("observed", each.primitive, each.observation) for each in seen if each.primitive),
+        *(_fact("observed", each.primitive, each.observation) for each in shown),
         *(
             _fact("done_to", words_of(each.purpose), each.primitive, each.observation)
-            for each in seen
-            if each.purpose and each.primitive
+            for each in shown
+            if each.purpose
         ),
         *(_fact("tested", case.primitive, case.name) for case in cases),
     }
     return "\n".join(sorted(lines)) + "\n"
 
 
-def _primitives(words: Sequence[PrimitiveWords]) -> Iterator[str]:
+def _fact(predicate: str, *arguments: str | int) -> str:
+    """A fact of the rules, in whose texts only these three signs are written otherwise."""
+    signs = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n"})
+    words = (str(e) if isinstance(e, int) else f'"{e.translate(signs)}"' for e in arguments)
+    return f"{predicate}({', '.join(words)})."
+
+
+def _primitives(words: Sequence[PrimitiveWords], verbs: set[str]) -> Iterator[str]:
+    """What primitives are called, and which of the verbs mean the same, or a kind of it."""
     for word in words:
         yield _fact("primitive", word.name)
         yield from (_fact("specialises", word.name, general) for general in word.general)
@@ -515,28 +473,24 @@ def _primitives(words: Sequence[PrimitiveWords]) -> Iterator[str]:
         own = own_links(word.name)
         classes = word.levin or (own[1] or ("",) if own else ())
         yield from (_fact("levin", word.name, number) for number in classes)
+        for link in sense_links(word):
+            if link.key not in wordnet():
+                continue
+            synset = wordnet().of_key(link.key)
+            for lemma in verbs.intersection(synset.lemmas) - {link.verb}:
+                yield _fact("same_sense", word.name, lemma)
+            for other in verbs:
+                up = (wordnet().steps_above(wordnet().of_key(e)) for e in motion_senses(other))
+                if steps := min((each[synset] for each in up if synset in each), default=0):
+                    yield _fact("kind_of", word.name, other, steps)
 
 
-def _fact(predicate: str, *arguments: str) -> str:
-    return f"{predicate}({', '.join(map(_text, arguments))})."
-
-
-def _text(value: str) -> str:
-    """A text of the rules, in which only these three signs are written otherwise."""
-    escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
-    return f'"{escaped}"'
-
-
-def _class_facts() -> Iterator[str]:
+def _classes_stated(members: Members) -> Iterator[str]:
     for levin in levin_classes().values():
         yield _fact("class", levin.number)
         if levin.broader:
             yield _fact("within", levin.number, levin.broader)
-
-
-def _members(members: Members) -> Iterator[str]:
-    for number, verb in named_members():
-        yield _fact("named_member", number, verb)
+    yield from (_fact("named_member", number, verb) for number, verb in _named_members())
     for number, verbs in members.items():
         yield from (_fact("known_member", number, verb) for verb in verbs)
     for row in table("motion_classes"):
@@ -545,45 +499,14 @@ def _members(members: Members) -> Iterator[str]:
         yield _fact("needs", row["class"], row["verb"], row["need"], row["rule"])
 
 
-def named_members() -> list[tuple[str, str]]:
+def _named_members() -> set[tuple[str, str]]:
     """Classes and verbs that the thesis names; "touch with" is the verb "touch"."""
-    pairs = {
+    return {
         (claim.levin, verb.removesuffix(" with"))
         for claim in thesis_claims()
         if claim.levin
         for verb in claim.verbs
     }
-    return sorted(pairs)
-
-
-def _every_verb(words: Sequence[PrimitiveWords], members: Members) -> set[str]:
-    named = {verb for _, verb in named_members()}
-    own = {verb for each in words for verb in each.verbs}
-    return named | own | {verb for verbs in members.values() for verb in verbs}
-
-
-def _senses(words: Sequence[PrimitiveWords], verbs: set[str]) -> Iterator[str]:
-    """Which of the verbs mean the same as a primitive's verb, or a kind of it, as motions."""
-    for word in words:
-        for link in sense_links(word):
-            if link.key not in wordnet():
-                continue
-            synset = wordnet().of_key(link.key)
-            for lemma in synset.lemmas:
-                if lemma in verbs and lemma != link.verb:
-                    yield _fact("same_sense", word.name, lemma)
-            for other in verbs:
-                steps = _steps_to(synset, other)
-                if steps:
-                    yield f"kind_of({_text(word.name)}, {_text(other)}, {steps})."
-
-
-def _steps_to(synset: Synset, verb: str) -> int:
-    """How many steps above the verb's nearest sense as a motion a synset stands; zero if none."""
-    found = (
-        wordnet().steps_above(wordnet().of_key(key)).get(synset, 0) for key in motion_senses(verb)
-    )
-    return min((each for each in found if each), default=0)
 
 
 def verbnet_members(classes: Iterable[VerbClass]) -> dict[str, frozenset[str]]:
@@ -591,13 +514,9 @@ def verbnet_members(classes: Iterable[VerbClass]) -> dict[str, frozenset[str]]:
     found: dict[str, set[str]] = {}
     by_name = {name: each.number for each in levin_classes().values() for name in each.verbnet}
     for verb_class in classes:
-        number = by_name.get(_top(verb_class.id), verb_class.levin)
+        top = "-".join(verb_class.id.split("-")[:2])  # ``touch-20`` of ``touch-20-1``
+        number = by_name.get(top, verb_class.levin)
         if number in levin_classes():
             verbs = {member.lemma.replace("_", " ") for member in verb_class.members}
             found.setdefault(number, set()).update(verbs)
     return {number: frozenset(verbs) for number, verbs in found.items()}
-
-
-def _top(name: str) -> str:
-    """The name of the class that a subclass belongs to: ``touch-20`` of ``touch-20-1``."""
-    return "-".join(name.split("-")[:2])

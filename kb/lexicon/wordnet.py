@@ -2,7 +2,7 @@
 
 import csv
 import gzip
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -84,19 +84,15 @@ class WordNet:
         self._by_lemma: dict[str, list[tuple[int, str]]] = {}
         self._below: dict[str, list[str]] = {}
         for line in lines:
-            self._index(line)
+            offset, _, _, words, above, _ = line.split("\t", 5)
+            self._rows[offset] = line
+            for word in words.split(" "):
+                lemma, key, number = word.lower().split(",")
+                self._by_key[f"{lemma}%{key}"] = offset
+                self._by_lemma.setdefault(lemma, []).append((int(number), offset))
+            for hypernym in above.split():
+                self._below.setdefault(hypernym, []).append(offset)
         self._synset = cache(self._parse)
-
-    def _index(self, line: str) -> None:
-        offset, _, _, words, above, _ = line.split("\t", 5)
-        self._rows[offset] = line
-        for word in words.split(" "):
-            lemma, key, number = word.split(",")
-            lemma = lemma.lower()
-            self._by_key[f"{lemma}%{key}"] = offset
-            self._by_lemma.setdefault(lemma, []).append((int(number), offset))
-        for hypernym in above.split():
-            self._below.setdefault(hypernym, []).append(offset)
 
     def _parse(self, offset: str) -> Synset:
         _, ili, lexfile, words, above, frames, gloss = self._rows[offset].split("\t")
@@ -104,13 +100,8 @@ class WordNet:
         senses = tuple(
             Sense(lemma, f"{lemma.lower()}%{key}", int(number)) for lemma, key, number in fields
         )
-        return Synset(
-            offset, ili, int(lexfile), senses, tuple(above.split()), tuple(frames.split()), gloss
-        )
-
-    def __len__(self) -> int:
-        """The number of synsets."""
-        return len(self._rows)
+        up, sentences = tuple(above.split()), tuple(frames.split())
+        return Synset(offset, ili, int(lexfile), senses, up, sentences, gloss)
 
     def __iter__(self) -> Iterator[Synset]:
         """Every synset, by offset."""
@@ -133,8 +124,7 @@ class WordNet:
         """
         full = normal_key(key)
         if full not in self._by_key:
-            lemma = full.partition("%")[0]
-            known = [sense.key for sense, _ in self.of_lemma(lemma)]
+            known = [sense.key for sense, _ in self.of_lemma(full.partition("%")[0])]
             raise UnknownNameError("WordNet 3.1 verb sense", key, known)
         return self._synset(self._by_key[full])
 
@@ -153,23 +143,15 @@ class WordNet:
         """The synsets one step below this one, by offset."""
         return tuple(map(self._synset, sorted(self._below.get(synset.offset, ()))))
 
-    def what_it_is(self, synset: Synset) -> tuple[Synset, ...]:
-        """Every synset above this one in the hierarchy, nearest first."""
-        return tuple(self.steps_above(synset))
-
     def steps_above(self, synset: Synset) -> dict[Synset, int]:
         """How many steps above this one each synset stands, nearest first."""
-        return self._walk(synset, lambda each: each.hypernyms)
-
-    def _walk(self, start: Synset, step: Callable[[Synset], Iterable[str]]) -> dict[Synset, int]:
-        seen, found, queue = {start.offset}, dict[Synset, int](), [start]
-        steps = 0
-        while queue:
-            steps += 1
-            level = sorted({offset for each in queue for offset in step(each)} - seen)
-            seen.update(level)
-            queue = [self._synset(offset) for offset in level]
-            found |= dict.fromkeys(queue, steps)
+        seen, found, level = {synset.offset}, dict[Synset, int](), [synset]
+        while level:
+            above = sorted({offset for each in level for offset in each.hypernyms} - seen)
+            seen.update(above)
+            level = [self._synset(offset) for offset in above]
+            steps = 1 + max(found.values(), default=0)
+            found |= dict.fromkeys(level, steps)
         return found
 
 

@@ -1,6 +1,5 @@
 """A complex action drawn: as text, as a picture in SVG, and as Turtle."""
 
-from collections.abc import Iterator
 from html import escape
 
 from pyoxigraph import RdfFormat
@@ -30,10 +29,11 @@ def as_text(actionary: Pars, name: str) -> str:
     values = [actionary.complex_par(each.name) for each in found]
     first = values[0]
     lines = [f"{first.name}({', '.join(first.objects)})"]
-    for ee, steps in _rows(first):
+    for ee, steps in _rows(first).items():
         lines.append(f"  {'every link' if ee == COMMON else ee}")
         for index, step in enumerate(steps):
-            shares = " ".join(f"{_share(each, ee, index):.3f}" for each in values)
+            own = (_rows(each).get(ee, ())[index : index + 1] for each in values)
+            shares = " ".join(f"{sum(each.share for each in steps):.3f}" for steps in own)
             purpose = f" to {step.purpose}" if step.purpose else ""
             lines.append(f"    {index + 1}. {_call(step) + purpose:<48} {shares}")
     for relation in first.relations:
@@ -54,25 +54,19 @@ def _call(step: Step) -> str:
     return f"{step.action}({', '.join(step.objects)})"
 
 
-def _rows(value: ComplexPar) -> Iterator[tuple[str, tuple[Step, ...]]]:
-    for link in value.links:
-        yield link.ee, link.steps
-    if value.common:
-        yield COMMON, (value.common,)
-
-
-def _share(value: ComplexPar, ee: str, index: int) -> float:
-    steps = dict(_rows(value)).get(ee, ())
-    return steps[index].share if index < len(steps) else 0.0
+def _rows(value: ComplexPar) -> dict[str, tuple[Step, ...]]:
+    """The steps of each link, and the one that ends them all."""
+    common = {COMMON: (value.common,)} if value.common else {}
+    return {link.ee: link.steps for link in value.links} | common
 
 
 def as_svg(actionary: Pars, name: str) -> str:
     """The action's steps as bars over its duration, a row a link."""
     value = actionary.complex_par(name)
-    actions = sorted({step.action for _, steps in _rows(value) for step in steps})
+    actions = sorted({step.action for steps in _rows(value).values() for step in steps})
     colour = {each: COLOURS[index % len(COLOURS)] for index, each in enumerate(actions)}
-    links = [ee for ee, _ in _rows(value) if ee != COMMON]
-    height = TOP + ROW * len(links) + 30
+    links = [ee for ee in _rows(value) if ee != COMMON]
+    height, room = TOP + ROW * len(links) + 30, WIDTH - LEFT - 10
     title = f"{value.name}, {value.duration_s:.2f} s"
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}" '
@@ -81,24 +75,22 @@ def as_svg(actionary: Pars, name: str) -> str:
         svg.text(LEFT, 22, title, font_size=15),
     ]
     lines += [svg.text(8, TOP + ROW * row + 22, ee) for row, ee in enumerate(links)]
-    for ee, steps in _rows(value):
+    for ee, steps in _rows(value).items():
         row, rows = (0, len(links)) if ee == COMMON else (links.index(ee), 1)
         for step in steps:
-            lines += _bar(step, TOP + ROW * row, ROW * rows - 8, colour[step.action])
+            y, tall = TOP + ROW * row, ROW * rows - 8
+            x = f"{LEFT + room * step.begin:.1f}"
+            width = f"{max(room * step.share, 1.0):.1f}"
+            aim = f", to {step.purpose}" if step.purpose else ""
+            about = f"{_call(step)}: {step.share:.3f} of the whole{aim}"
+            fill = colour[step.action]
+            box = svg.rect(x, y, width, tall, radius=3, fill=fill, stroke="white")
+            label = svg.text(4, f"{tall / 2 + 4:.1f}", _call(step), fill="white")
+            lines += [
+                f"<g><title>{escape(about)}</title>{box}",
+                f'<svg x="{x}" y="{y}" width="{width}" height="{tall}">{label}</svg></g>',
+            ]
     return "\n".join([*lines, "</svg>"]) + "\n"
-
-
-def _bar(step: Step, y: int, height: int, colour: str) -> list[str]:
-    width_px = WIDTH - LEFT - 10
-    x, width = LEFT + width_px * step.begin, max(width_px * step.share, 1.0)
-    aim = f", to {step.purpose}" if step.purpose else ""
-    about = f"{_call(step)}: {step.share:.3f} of the whole{aim}"
-    box = svg.rect(f"{x:.1f}", y, f"{width:.1f}", height, radius=3, fill=colour, stroke="white")
-    label = svg.text(4, f"{height / 2 + 4:.1f}", _call(step), fill="white")
-    return [
-        f"<g><title>{escape(about)}</title>{box}",
-        f'<svg x="{x:.1f}" y="{y}" width="{width:.1f}" height="{height}">{label}</svg></g>',
-    ]
 
 
 def as_turtle(actionary: Pars, name: str) -> str:

@@ -13,7 +13,7 @@ from string import Template
 from typing import TypeAlias
 
 from capar.model.errors import UnknownNameError
-from kb.lexicon.links import ThesisStatus, above, levin_class
+from kb.lexicon.links import ThesisStatus, above, levin_classes
 from kb.reports.linguistics import ClassReport, How, LinguisticReport
 
 PAGE = 970
@@ -89,7 +89,7 @@ def draw(report: LinguisticReport) -> str:
         if top != group:
             group = top
             y += 14
-            parts.append(text(0, y + 12, f"{top}  {levin_class(top).title}", class_="group"))
+            parts.append(text(0, y + 12, f"{top}  {levin_classes()[top].title}", class_="group"))
             parts.append(f'<line x1="0" y1="{y + 20}" x2="{PAGE}" y2="{y + 20}" class="rule"/>')
             y += 30
         y = _row(parts, levin, y)
@@ -149,17 +149,12 @@ def _column(parts: list[str], verbs: dict[str, list[str]], x: int, y: int) -> in
 def _wrapped(words: Sequence[str], width: int, between: str) -> list[str]:
     """Words in lines; what stands between them stays at the end of a line."""
     lines: list[str] = []
-    for piece in _pieces(words, between):
+    for piece in (*(f"{word}{between}" for word in words[:-1]), *words[-1:]):
         if lines and len(lines[-1] + piece.rstrip()) <= width:
             lines[-1] += piece
         else:
             lines.append(piece)
     return [line.rstrip() for line in lines]
-
-
-def _pieces(words: Sequence[str], between: str) -> Iterable[str]:
-    yield from (f"{word}{between}" for word in words[:-1])
-    yield from words[-1:]
 
 
 TITLE = "Verbs that the system addresses"
@@ -174,8 +169,6 @@ EVIDENCE = (
     "Observed: stored segments of captures bear a primitive's name; tested: a shipped test case "
     "does, and no stored segment; by rule only: a rule says so, and nothing shows it yet."
 )
-"""What counts as evidence."""
-
 NOTES = {
     "Coverage": "Counts what rules address, whatever the evidence.",
     "Classes": f"Shown by: stored captures and shipped test cases. {EVIDENCE}",
@@ -197,7 +190,10 @@ def tables(report: LinguisticReport) -> tuple[Table, ...]:
                 (
                     *(each.number, each.title, ", ".join(each.thesis), each.status.words),
                     *(", ".join([*each.primitives, *each.files]), each.reason),
-                    *(_shown_by(each), str(each.segments)),
+                    *(
+                        _cut({f"{e.where} ({e.primitive})": 0 for e in each.proofs}),
+                        str(each.segments),
+                    ),
                 )
                 for each in report.classes
             ),
@@ -274,11 +270,10 @@ def coverage(report: LinguisticReport) -> tuple[Row, ...]:
     )
 
 
-def _shown_by(each: ClassReport) -> str:
-    """The evidence of a class in a line, long lists cut."""
-    places = list(dict.fromkeys(f"{proof.where} ({proof.primitive})" for proof in each.proofs))
+def _cut(places: Mapping[str, object]) -> str:
+    """Places in a line, those after the fourth counted."""
     more = f" and {len(places) - 4} more" if len(places) > 4 else ""
-    return ", ".join(places[:4]) + more
+    return ", ".join([*places][:4]) + more
 
 
 # The formats

@@ -15,7 +15,6 @@ from kb.lexicon.links import (
     ThesisStatus,
     above,
     book_order,
-    levin_class,
     levin_classes,
     motion_senses,
     remarks,
@@ -58,15 +57,12 @@ class How(StrEnum):
     @property
     def words(self) -> str:
         """The standing as people read it."""
-        return _HOW_WORDS[self.value]
-
-
-_HOW_WORDS = {
-    "addressed": "addressed",
-    "general": "not addressed, only what is more general",
-    "purpose": "only as a stated purpose",
-    "missing": "not addressed",
-}
+        return {
+            "addressed": "addressed",
+            "general": "not addressed, only what is more general",
+            "purpose": "only as a stated purpose",
+            "missing": "not addressed",
+        }[self.value]
 
 
 class Evidence(StrEnum):
@@ -169,17 +165,16 @@ class ClassReport:
         if not gone:
             doers = sorted({name for each in self.judged for name in each.primitives})
             return f"By {', '.join(doers)}."
-        return " ".join(_about(each) for each in gone)
-
-
-def _about(verb: VerbReport) -> str:
-    by = ", ".join(verb.primitives)
-    lacks = f" Missing: {'; '.join(verb.lacks)}." if verb.lacks else ""
-    if verb.how is How.GENERAL:
-        return f"{verb.verb}: not addressed; only what is more general is: {by}.{lacks}"
-    if verb.how is How.PURPOSE:
-        return f"{verb.verb}: only as a purpose that the user states, of {by}.{lacks}"
-    return f"{verb.verb}: not addressed.{lacks}"
+        told = []
+        for each in gone:
+            by = ", ".join(each.primitives)
+            how = {
+                How.GENERAL: f"not addressed; only what is more general is: {by}",
+                How.PURPOSE: f"only as a purpose that the user states, of {by}",
+            }.get(each.how, "not addressed")
+            lacks = f" Missing: {'; '.join(each.lacks)}." if each.lacks else ""
+            told.append(f"{each.verb}: {how}.{lacks}")
+        return " ".join(told)
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,20 +239,30 @@ def assemble(
     parts = _Parts(derived, words, seen, members)
     numbers = sorted(parts.status, key=book_order)
     classes = tuple(parts.class_report(number) for number in numbers)
+    senses = []
+    for link in (*thesis_senses(), *(s for word in sorted(words) for s in sense_links(word))):
+        synset = wordnet().of_key(link.key) if link.key in wordnet() else None
+        ranks = {sense.key: sense.number for sense in synset.senses} if synset else {}
+        senses.append(SenseRow(link, synset, ranks.get(link.key, 0)))
+    verbs = [each for report in classes for each in report.verbs]
     return LinguisticReport(
         classes=classes,
         claims=thesis_claims(),
-        senses=tuple(
-            _sense_row(link)
-            for link in (
-                *thesis_senses(),
-                *(s for word in sorted(words) for s in sense_links(word)),
-            )
-        ),
+        senses=tuple(senses),
         primitives=tuple(sorted(words)),
         remarks=remarks(),
-        coverage=_coverage(
-            classes, seen, {each for number in numbers for each in parts.showing(number)}
+        coverage=Coverage(
+            classes=len(classes),
+            classes_addressed=sum(each.status is Status.ADDRESSED for each in classes),
+            classes_partly=sum(each.status is Status.PARTLY for each in classes),
+            verbs=len(verbs),
+            verbs_addressed=sum(verb.how is How.ADDRESSED for verb in verbs),
+            verbs_general=sum(verb.how is How.GENERAL for verb in verbs),
+            verbs_purpose=sum(verb.how is How.PURPOSE for verb in verbs),
+            segments=total(seen),
+            segments_named=total(each for each in seen if each.primitive),
+            segments_in_classes=total({e for number in numbers for e in parts.showing(number)}),
+            unstated=len(unstated_classes()),
         ),
         observations=tuple(sorted({each.observation for each in seen})),
         verbnet=bool(members),
@@ -305,23 +310,14 @@ class _Parts:
             or (number, words_of(each.purpose), each.primitive) in self.purposes
         )
 
-    def _proofs(self, number: str, showing: Sequence[Seen]) -> tuple[Proof, ...]:
-        """The derived proofs, without those by what is only more general."""
-        observed = {(each.primitive, "observed", each.observation) for each in showing}
-        return tuple(
-            each
-            for each in self.proofs[number]
-            if (number, each.primitive) in self.own
-            or (each.primitive, each.kind, each.where) in observed
-        )
-
     def class_report(self, number: str) -> ClassReport:
-        levin = levin_class(number)
+        levin = levin_classes()[number]
         judged = set(self.counts.get((number,), ()))
         verbs = sorted(judged | set(self.members.get(number, ())))
         reports = tuple(self._verb(number, verb, counts=verb in judged) for verb in verbs)
         doers = sorted({name for each in reports if each.counts for name in each.primitives})
         showing = self.showing(number)
+        observed = {(each.primitive, "observed", each.observation) for each in showing}
         return ClassReport(
             number=number,
             title=levin.title,
@@ -331,8 +327,19 @@ class _Parts:
             verbs=reports,
             primitives=self.linked.get((number,), ()),
             files=tuple(sorted({self.files[each] for each in doers if each in self.files})),
-            proofs=self._proofs(number, showing),
-            remarks=tuple(each for each in remarks() if _concerns(each.levin, number)),
+            # Without those by what is only more general.
+            proofs=tuple(
+                each
+                for each in self.proofs[number]
+                if (number, each.primitive) in self.own
+                or (each.primitive, each.kind, each.where) in observed
+            ),
+            remarks=tuple(
+                each
+                for each in remarks()
+                if each.levin == number
+                or (each.levin in levin_classes() and number in above(each.levin))
+            ),
             segments=total(showing),
         )
 
@@ -344,6 +351,17 @@ class _Parts:
         segments = total(each for each in self.seen if each.primitive in own)
         tested = (each for each in self.proofs.get(number, ()) if each.kind == "tested")
         cases = tuple(sorted({each.where for each in tested if each.primitive in own}))
+        said = {
+            row["need"]: row["words"]
+            for row in table("needs")
+            if row["class"] == number and row["verb"] == verb
+        }
+        # The senses that the primitives have the verb in; without any, those as a motion.
+        links = (link for name in own for link in sense_links(self.words[name]))
+        keys = dict.fromkeys(link.key for link in links if link.verb == verb)
+        senses = tuple(
+            wordnet().of_key(each) for each in keys or motion_senses(verb) if each in wordnet()
+        )
         evidence = Evidence.NONE
         if own:
             unseen = Evidence.TESTED if cases else Evidence.RULE
@@ -352,28 +370,16 @@ class _Parts:
             verb=verb,
             how=how,
             primitives=primitives,
-            lacks=_needs(number, verb, self.missing.get(key, ())),
-            senses=self._senses(verb, primitives if how is How.ADDRESSED else ()),
+            lacks=tuple(
+                said.get(each, "a primitive of this class with this verb")
+                for each in self.missing.get(key, ())
+            ),
+            senses=senses or tuple(synset for _, synset in wordnet().of_lemma(verb)[:1]),
             counts=counts,
             evidence=evidence,
             segments=segments,
             cases=cases,
         )
-
-    def _senses(self, verb: str, primitives: Sequence[str]) -> tuple[Synset, ...]:
-        """The senses that the primitives have the verb in; without any, those as a motion."""
-        own = (link for name in primitives for link in sense_links(self.words[name]))
-        keys = dict.fromkeys(link.key for link in own if link.verb == verb)
-        found = tuple(
-            wordnet().of_key(each) for each in keys or motion_senses(verb) if each in wordnet()
-        )
-        return found or tuple(synset for _, synset in wordnet().of_lemma(verb)[:1])
-
-
-def _concerns(remark: str, number: str) -> bool:
-    """Whether a remark about a class belongs to another that holds it."""
-    known = remark in levin_classes()
-    return remark == number or (known and number in above(remark))
 
 
 def _grouped(pairs: Iterable[tuple[Row, str]]) -> dict[Row, tuple[str, ...]]:
@@ -381,42 +387,6 @@ def _grouped(pairs: Iterable[tuple[Row, str]]) -> dict[Row, tuple[str, ...]]:
     for key, value in pairs:
         found[key].add(value)
     return {key: tuple(sorted(each)) for key, each in found.items()}
-
-
-def _needs(number: str, verb: str, lacking: Sequence[str]) -> tuple[str, ...]:
-    said = {
-        row["need"]: row["words"]
-        for row in table("needs")
-        if row["class"] == number and row["verb"] == verb
-    }
-    return tuple(said.get(each, "a primitive of this class with this verb") for each in lacking)
-
-
-def _sense_row(link: SenseLink) -> SenseRow:
-    if link.key not in wordnet():
-        return SenseRow(link, None, 0)
-    synset = wordnet().of_key(link.key)
-    number = next((sense.number for sense in synset.senses if sense.key == link.key), 0)
-    return SenseRow(link, synset, number)
-
-
-def _coverage(
-    classes: Sequence[ClassReport], seen: Sequence[Seen], showing: Iterable[Seen]
-) -> Coverage:
-    verbs = [each for report in classes for each in report.verbs]
-    return Coverage(
-        classes=len(classes),
-        classes_addressed=sum(each.status is Status.ADDRESSED for each in classes),
-        classes_partly=sum(each.status is Status.PARTLY for each in classes),
-        verbs=len(verbs),
-        verbs_addressed=sum(verb.how is How.ADDRESSED for verb in verbs),
-        verbs_general=sum(verb.how is How.GENERAL for verb in verbs),
-        verbs_purpose=sum(verb.how is How.PURPOSE for verb in verbs),
-        segments=total(seen),
-        segments_named=total(each for each in seen if each.primitive),
-        segments_in_classes=total(showing),
-        unstated=len(unstated_classes()),
-    )
 
 
 def unstated_classes() -> tuple[str, ...]:

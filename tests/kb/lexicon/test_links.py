@@ -14,7 +14,6 @@ from kb.lexicon.links import (
     above,
     book_order,
     class_links,
-    levin_class,
     levin_classes,
     sense_key,
     sense_links,
@@ -35,7 +34,7 @@ def test_classes_stand_in_the_books_order_below_known_ones() -> None:
     assert numbers == sorted(numbers, key=book_order)
     assert sum(bool(each.size) for each in levin_classes().values()) == 191
     assert list(above("40.3.1")) == ["40.3", "40"]
-    assert levin_class("9.10").title == "Pocket Verbs"
+    assert levin_classes()["9.10"].title == "Pocket Verbs"
 
 
 @pytest.mark.parametrize("name", ["thesis_claims", "motion_classes", "needs"])

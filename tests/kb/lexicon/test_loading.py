@@ -2,9 +2,9 @@
 
 from pyoxigraph import Literal
 
-from kb.lexicon import loading
 from kb.lexicon.links import PrimitiveWords
-from kb.lexicon.loading import WN, has_source, load_words, sense_node
+from kb.lexicon.loading import WN, has_source, load_words, node
+from kb.store.names import GRAPHS
 from kb.store.stores import Store, open_store
 from ontology import CAPAR, PREFIXES
 
@@ -23,7 +23,7 @@ def test_words_are_loaded_once_and_whole() -> None:
 
 def _sense_leads_to_its_synset(store: Store) -> None:
     (row,) = store.ask(
-        f"SELECT ?ili ?gloss WHERE {{ {sense_node('hit%2:35:00::')} "
+        f"SELECT ?ili ?gloss WHERE {{ {node('sense', 'hit%2:35:00::')} "
         f"<{PREFIXES['ontolex']}isLexicalizedSenseOf> ?s . ?s <{WN}ili> ?ili ; "
         f"<{PREFIXES['skos']}definition> ?gloss }}"
     ).plain()
@@ -42,7 +42,7 @@ def _links_say_who_claims_them(store: Store) -> None:
 def _every_kind_of_move_is_found(store: Store) -> None:
     (row,) = store.ask(
         f"SELECT (COUNT(DISTINCT ?kind) AS ?count) WHERE {{ ?kind <{WN}hypernym>+ ?move . "
-        f"{sense_node('move%2:38:01::')} <{PREFIXES['ontolex']}isLexicalizedSenseOf> ?move }}"
+        f"{node('sense', 'move%2:38:01::')} <{PREFIXES['ontolex']}isLexicalizedSenseOf> ?move }}"
     ).plain()
     assert row["count"] == 1039
 
@@ -56,7 +56,7 @@ def _other_links_replace_the_old(store: Store) -> None:
 def test_a_graph_without_its_mark_is_made_anew() -> None:
     store = open_store(None)
     load_words(store, WORDS)
-    graph = loading.graph_of("levin")
+    graph = GRAPHS["levin"]
     store.change(f"DELETE WHERE {{ GRAPH {graph} {{ {graph} ?p ?o }} }}")
     assert not has_source(store, "levin")
     assert load_words(store, WORDS)

@@ -78,8 +78,7 @@ def test_a_class_is_read_with_all_that_it_states() -> None:
 
 
 def test_the_rate_of_known_keys_is_counted() -> None:
-    rate = key_rate([read_class(EXAMPLE)], wordnet())
-    assert (rate.keys, rate.resolved, rate.share) == (4, 3, 0.75)
+    assert key_rate([read_class(EXAMPLE)], wordnet()) == (4, 3)
 
 
 def test_a_store_gives_back_what_was_put_in() -> None:
@@ -161,8 +160,7 @@ def test_every_file_of_verbnet_3_4_is_read(full: tuple[VerbClass, ...]) -> None:
 
 @needs_verbnet
 def test_more_than_ninety_nine_keys_in_a_hundred_resolve(full: tuple[VerbClass, ...]) -> None:
-    rate = key_rate(full, wordnet())
-    assert (rate.keys, rate.resolved) == (7960, 7942)
+    assert key_rate(full, wordnet()) == (7960, 7942)
 
 
 @needs_verbnet
