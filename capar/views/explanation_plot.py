@@ -1,7 +1,6 @@
 """The quantities of an explanation over time: a panel each, with limits and intervals of facts."""
 
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
@@ -9,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.errors import FileError
-from capar.views.picture import DPI, INK, QUIET, SUFFIXES
+from capar.views.picture import INK, QUIET, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 WIDTH_IN, PANEL_IN, HEAD_IN, LINE_IN = 11.0, 1.7, 0.9, 0.17
 """Width of the picture, heights of a panel, of the segments above, and of a line of text [in]."""
@@ -74,39 +73,32 @@ def draw_explanation(plot: Plot, path: Path) -> None:
     Raises:
         FileError: The suffix is another one, or the file cannot be written.
     """
-    from matplotlib import rc_context
+    save(lambda: _figure(plot), path)
+
+
+def _figure(plot: Plot) -> "Figure":
+    import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise FileError(
-            path, f"no picture format {path.suffix!r};", f"there are: {', '.join(SUFFIXES)}."
-        )
+    mpl.rcParams["font.size"] = 9  # within the settings of the picture
     lines = wrap(plot.summary, LETTERS)
     head = HEAD_IN + LINE_IN * (len(lines) + 1)
     height = head + PANEL_IN * len(plot.panels) + 0.4
-    with rc_context({"svg.hashsalt": "capar", "font.size": 9}):
-        figure = Figure(figsize=(WIDTH_IN, height))
-        figure.text(0.06, 1.0 - 0.22 / height, plot.title, weight="bold", size=11)
-        text = "\n".join(lines)
-        figure.text(0.06, 1.0 - 0.32 / height, text, va="top", color=INK)
-        ratios = [0.35 / PANEL_IN, *[1.0] * len(plot.panels)]
-        axes = figure.subplots(
-            len(ratios), 1, sharex=True, squeeze=False, gridspec_kw={"height_ratios": ratios}
-        )[:, 0]
-        top = 1.0 - (head - 0.3) / height
-        figure.subplots_adjust(left=0.06, right=0.97, top=top, bottom=0.4 / height, hspace=0.55)
-        _draw_segments(axes[0], plot)
-        for panel, at in zip(plot.panels, axes[1:], strict=True):
-            _draw_panel(at, panel, plot)
-        axes[-1].set_xlim(*plot.span)
-        axes[-1].set_xlabel("time [s]")
-        drawn = BytesIO()
-        figure.savefig(drawn, format=suffix[1:], dpi=DPI, metadata=SUFFIXES[suffix])
-    try:
-        path.write_bytes(drawn.getvalue())
-    except OSError as error:
-        raise FileError(path, f"cannot be written: {error.strerror or error}.") from None
+    figure = Figure(figsize=(WIDTH_IN, height))
+    figure.text(0.06, 1.0 - 0.22 / height, plot.title, weight="bold", size=11)
+    figure.text(0.06, 1.0 - 0.32 / height, "\n".join(lines), va="top", color=INK)
+    ratios = [0.35 / PANEL_IN, *[1.0] * len(plot.panels)]
+    axes = figure.subplots(
+        len(ratios), 1, sharex=True, squeeze=False, gridspec_kw={"height_ratios": ratios}
+    )[:, 0]
+    top = 1.0 - (head - 0.3) / height
+    figure.subplots_adjust(left=0.06, right=0.97, top=top, bottom=0.4 / height, hspace=0.55)
+    _draw_segments(axes[0], plot)
+    for panel, at in zip(plot.panels, axes[1:], strict=True):
+        _draw_panel(at, panel, plot)
+    axes[-1].set_xlim(*plot.span)
+    axes[-1].set_xlabel("time [s]")
+    return figure
 
 
 def _draw_segments(at: "Axes", plot: Plot) -> None:

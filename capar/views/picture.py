@@ -1,12 +1,12 @@
 """A picture of an observation over time: its rows, how they are painted, and the files."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 from io import BytesIO
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias
 from zlib import crc32
 
 import numpy as np
@@ -15,7 +15,7 @@ from jaxtyping import Bool, Float
 from capar.model.errors import FileError
 from capar.model.facts import LookingAt, Moving, Touching, ZeroCrossing
 from capar.model.geometry import runs
-from capar.model.observation import JointAction, Observation, ObservedLink, ObservedObject, Segment
+from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import UNKNOWN
 from capar.views.lettering import Placed, Span, place, shortened, width_in
 from capar.views.tables import performers
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 Speeds = Mapping[str, tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]]
 """Of each end-effector: times [s] and speeds [m/s]."""
+
+Clock = Callable[[int], float]
+"""The time of a frame [s]."""
 
 Lost = Mapping[str, Bool[np.ndarray, "frames"]]
 """Of each body: whether tracking had lost it."""
@@ -40,8 +43,6 @@ MOST_NAMED = 4
 MOST_DETAILED = 8
 """With more links than these speeds and zero crossings are left out, and those that handle objects
 stand first: a whole body with its fingers is looked at as a whole."""
-
-_Name = TypeVar("_Name", str, tuple[str, ...])
 
 
 class Kind(Enum):
@@ -78,12 +79,19 @@ class Row:
 def rows(observation: Observation, speeds: Speeds, lost: Lost | None = None) -> tuple[Row, ...]:
     """Every row, from the top: each link, what several do as one action, objects, and gaze."""
     clock = frame_clock(observation, speeds)
+    links = list(observation.links)
+    if not is_detailed(observation):
+        links.sort(key=lambda link: not any(each.objects for each in link.segments))
     out: list[Row] = []
-    for link in _links(observation):
+    for link in links:
         out += _link_rows(observation, link, speeds, clock)
     out += _joint_rows(observation, clock)
     out += _object_rows(observation, clock)
-    out = [replace(each, lost=_lost(each.about, lost or {}, clock)) for each in out]
+    for index, row in enumerate(out):
+        found = [lost[name] for name in row.about if name in lost] if lost else []
+        missing = runs(np.logical_or.reduce(found)) if found else []
+        spans = tuple(Span(clock(first), clock(last), "") for first, last in missing)
+        out[index] = replace(row, lost=spans)
     return (*out, *_gaze_rows(observation, clock))
 
 
@@ -92,22 +100,7 @@ def is_detailed(observation: Observation) -> bool:
     return len(observation.links) <= MOST_DETAILED
 
 
-def _links(observation: Observation) -> list[ObservedLink]:
-    """The links as they are, or, of many, those first that handle objects."""
-    if is_detailed(observation):
-        return list(observation.links)
-    return sorted(
-        observation.links, key=lambda link: not any(each.objects for each in link.segments)
-    )
-
-
-def _lost(about: Sequence[str], lost: Lost, clock: Callable[[int], float]) -> tuple[Span, ...]:
-    found = [lost[name] for name in about if name in lost]
-    missing = runs(np.logical_or.reduce(found)) if found else []
-    return tuple(Span(clock(first), clock(last), "") for first, last in missing)
-
-
-def frame_clock(observation: Observation, speeds: Speeds) -> Callable[[int], float]:
+def frame_clock(observation: Observation, speeds: Speeds) -> Clock:
     """The time of a frame [s].
 
     It is exact where a speed is given for every frame; else it is interpolated between the
@@ -132,8 +125,9 @@ def spoken(name: str) -> str:
 
 def marked(observation: Observation, name: str) -> str:
     """An object's name with the marks that the footnote explains."""
-    mark = ASSUMED if any(each.assumed for each in _objects(observation, name)) else ""
-    return spoken(name) + mark + (STAND_IN if name in stand_ins(observation) else "")
+    assumed = any(each.assumed for each in observation.objects if each.name == name)
+    stand_in = STAND_IN if name in stand_ins(observation) else ""
+    return spoken(name) + (ASSUMED if assumed else "") + stand_in
 
 
 def stand_ins(observation: Observation) -> dict[str, str]:
@@ -145,30 +139,32 @@ def stand_ins(observation: Observation) -> dict[str, str]:
     }
 
 
-def _objects(observation: Observation, name: str) -> list[ObservedObject]:
-    return [each for each in observation.objects if each.name == name]
+def _spans(
+    found: Iterable[Any], clock: Clock, label: Callable[[Any], str] = lambda _: "", kind: Any = None
+) -> tuple[Span, ...]:
+    """Segments, joint actions or facts of intervals as spans of time."""
+    return tuple(
+        Span(clock(each.first), clock(each.last), label(each), kind(each) if kind else "")
+        for each in found
+    )
 
 
 def _link_rows(
-    observation: Observation, link: ObservedLink, speeds: Speeds, clock: Callable[[int], float]
+    observation: Observation, link: ObservedLink, speeds: Speeds, clock: Clock
 ) -> list[Row]:
-    spans = tuple(
-        Span(clock(each.first), clock(each.last), each.name, kind_of(each))
-        for each in link.segments
-    )
+    spans = _spans(link.segments, clock, lambda each: str(each.name), kind_of)
     borders = tuple(sorted({each.start_s for each in spans} | {each.end_s for each in spans}))
-    crossings = sorted(
-        each.frame
+    ticks = sorted(
+        clock(each.frame)
         for each in observation.facts
         if isinstance(each, ZeroCrossing) and each.ee == link.ee
     )
     out = [Row(Kind.SEGMENTS, marked(observation, link.ee), spans, borders=borders)]
-    ticks = tuple(clock(each) for each in crossings)
     if ticks and is_detailed(observation):
-        out.append(Row(Kind.TICKS, "zero crossings", ticks=ticks, borders=borders))
+        out.append(Row(Kind.TICKS, "zero crossings", ticks=tuple(ticks), borders=borders))
     touched = [each for each in _touching(observation) if each.body == link.ee]
-    for name in _in_order(each.other for each in touched):
-        bars = tuple(_span(each, clock) for each in touched if each.other == name)
+    for name in dict.fromkeys(each.other for each in touched):
+        bars = _spans((each for each in touched if each.other == name), clock)
         label = f"touches {marked(observation, name)}"
         out.append(Row(Kind.BARS, label, bars, borders=borders, about=(link.ee, name)))
     if link.ee in speeds and is_detailed(observation):
@@ -176,26 +172,20 @@ def _link_rows(
     return out
 
 
-def _joint_rows(observation: Observation, clock: Callable[[int], float]) -> list[Row]:
-    """For those who act together: what they do as one action."""
+def _joint_rows(observation: Observation, clock: Clock) -> list[Row]:
+    """For those who act together: what they do as one action; of many two are named."""
+    kinds = {
+        name: kind_of(each) for each in observation.segments for name in (*each.general, each.name)
+    }
     rows = []
-    kinds = _kinds(observation)
-    for ees in _in_order(each.who for each in observation.joint):
+    for ees in dict.fromkeys(each.who for each in observation.joint):
         joint = [each for each in observation.joint if each.who == ees]
-        spans = tuple(
-            Span(clock(each.first), clock(each.last), each.name, kinds.get(each.name, each.name))
-            for each in joint
-        )
-        rows.append(Row(Kind.SEGMENTS, _who(observation, joint[0]), spans))
+        who = observation.who(joint[0])
+        if len(ees) > MOST_NAMED:
+            who = f"{spoken(ees[0])}, {spoken(ees[1])} and {len(ees) - 2} more"
+        spans = _spans(joint, clock, lambda e: str(e.name), lambda e: kinds.get(e.name, e.name))
+        rows.append(Row(Kind.SEGMENTS, who, spans))
     return rows
-
-
-def _who(observation: Observation, joint: JointAction) -> str:
-    """Who takes part, in few words: of many the first two are named."""
-    if len(joint.who) <= MOST_NAMED:
-        return observation.who(joint)
-    first, second = (spoken(each) for each in joint.who[:2])
-    return f"{first}, {second} and {len(joint.who) - 2} more"
 
 
 def kind_of(segment: Segment) -> str:
@@ -203,43 +193,32 @@ def kind_of(segment: Segment) -> str:
     return segment.general[-1] if segment.general else segment.name
 
 
-def _kinds(observation: Observation) -> dict[str, str]:
-    """The kind of each name that segments have or specialise."""
-    return {
-        name: kind_of(each) for each in observation.segments for name in (*each.general, each.name)
-    }
-
-
-def _object_rows(observation: Observation, clock: Callable[[int], float]) -> list[Row]:
+def _object_rows(observation: Observation, clock: Clock) -> list[Row]:
     acting = {each.ee for each in observation.links}
-    between = [each for each in _touching(observation) if each.body not in acting]
     pairs: dict[frozenset[str], list[Touching]] = {}
-    for relation in between:
-        pairs.setdefault(frozenset((relation.body, relation.other)), []).append(relation)
+    for each in _touching(observation):
+        if each.body not in acting:
+            pairs.setdefault(frozenset((each.body, each.other)), []).append(each)
     out = []
     for found in pairs.values():
         names = (found[0].body, found[0].other)
         label = " touches ".join(marked(observation, each) for each in names)
-        bars = tuple(dict.fromkeys(_span(each, clock) for each in found))
+        bars = tuple(dict.fromkeys(_spans(found, clock)))
         out.append(Row(Kind.BARS, label, bars, about=names))
     moves = sorted(each for each in observation.facts if isinstance(each, Moving))
-    for name in _in_order(each.object for each in moves):
-        bars = tuple(_span(each, clock) for each in moves if each.object == name)
-        label = f"{marked(observation, name)} moves"
-        out.append(Row(Kind.MOTION, label, bars, about=(name,)))
+    for name in dict.fromkeys(each.object for each in moves):
+        bars = _spans((each for each in moves if each.object == name), clock)
+        out.append(Row(Kind.MOTION, f"{marked(observation, name)} moves", bars, about=(name,)))
     return [Row(Kind.HEADING, "objects"), *out] if out else []
 
 
-def _gaze_rows(observation: Observation, clock: Callable[[int], float]) -> list[Row]:
+def _gaze_rows(observation: Observation, clock: Clock) -> list[Row]:
     looks = [each for each in observation.facts if isinstance(each, LookingAt)]
     looks.sort(key=lambda each: (each.first, each.last, each.object))
     out = []
-    for sensor in _in_order(each.sensor for each in looks):
-        spans = tuple(
-            Span(clock(each.first), clock(each.last), marked(observation, each.object))
-            for each in looks
-            if each.sensor == sensor
-        )
+    for sensor in dict.fromkeys(each.sensor for each in looks):
+        own = (each for each in looks if each.sensor == sensor)
+        spans = _spans(own, clock, lambda each: marked(observation, each.object))
         out.append(Row(Kind.NAMES, f"{spoken(sensor)} looks at", spans))
     return [Row(Kind.HEADING, "attention"), *out] if out else []
 
@@ -247,15 +226,6 @@ def _gaze_rows(observation: Observation, clock: Callable[[int], float]) -> list[
 def _touching(observation: Observation) -> list[Touching]:
     found = [each for each in observation.facts if isinstance(each, Touching)]
     return sorted(found, key=lambda each: (each.first, each.last, each.body, each.other))
-
-
-def _span(fact: Touching | Moving, clock: Callable[[int], float]) -> Span:
-    return Span(clock(fact.first), clock(fact.last), "")
-
-
-def _in_order(names: Iterable[_Name]) -> list[_Name]:
-    """Each once, as first met."""
-    return list(dict.fromkeys(names))
 
 
 INK, QUIET, FAINT = "#1a1a1a", "#5c5c5c", "#d9d9d9"
@@ -317,13 +287,32 @@ class Painter:
     def __init__(self, rows: Sequence[Row], duration_s: float, width_in: float) -> None:
         self.width = width_in
         self.duration_s = duration_s
+        self._seconds_per_inch = duration_s / width_in
         self._rows = tuple(rows)
-        self._seen = sorted(_labels(rows, Kind.NAMES))
-        self._placed = {index: self._place(row) for index, row in enumerate(rows)}
-        self._tops = self._stack()
+        self._seen = sorted({e.label for row in rows if row.kind is Kind.NAMES for e in row.spans})
+        self._placed = {
+            index: place(
+                row.spans,
+                seconds_per_inch=self._seconds_per_inch,
+                range_s=(0.0, duration_s),
+                points=POINTS[row.kind],
+                rows_above=ROWS_ABOVE[row.kind],
+            )
+            for index, row in enumerate(rows)
+            if row.kind in POINTS
+        }
+        self._tops = [0.0]
+        """Upper edge of each row, and the lower edge of the last."""
+        for index, row in enumerate(rows):
+            above = max((each.row for each in self._placed.get(index, ())), default=0)
+            gap = LINK_GAP_IN if row.kind is Kind.SEGMENTS and index else 0.0
+            height = gap + HEIGHTS_IN[row.kind] + LABEL_ROW_IN * max(above, 0)
+            self._tops.append(self._tops[-1] + height)
         self.height = self._tops[-1] + FOOT_IN
         self.legend = self._legend()
-        self._fastest = max((_peak(each) for each in rows), default=0.0)
+        speeds = [each.curve[1] for each in rows if each.curve is not None]
+        finite = [each[np.isfinite(each)] for each in map(np.asarray, speeds)]
+        self._fastest = max((float(each.max()) for each in finite if each.size), default=0.0)
 
     def look(self, span: Span, kind: Kind) -> dict[str, Any]:
         """The colours of a bar in a row of that kind; hatching means lost tracking alone."""
@@ -332,17 +321,26 @@ class Painter:
         elif span.label == UNKNOWN:
             return {**UNNAMED, "linewidth": 0.8}
         else:
-            colour = colour_of(span.kind or span.label)
+            kind_name = span.kind or span.label
+            colour = COLOURS.get(kind_name) or OTHERS[crc32(kind_name.encode()) % len(OTHERS)]
         return {"facecolor": colour, "edgecolor": "white", "linewidth": 0.8}
 
     def paint(self, axes: "Axes") -> None:
         """Put everything on the axes."""
         axes.set_xlim(0.0, self.duration_s)
         axes.set_ylim(self.height, 0.0)
-        self._frame(axes)
+        for side in ("top", "left", "right"):
+            axes.spines[side].set_visible(False)
+        axes.spines["bottom"].set_color(QUIET)
+        axes.set_yticks([])
+        axes.tick_params(axis="x", colors=QUIET, labelsize=9, length=3)
+        axes.set_xlabel("time [s]", fontsize=9, color=QUIET, labelpad=2)
+        axes.grid(axis="x", color=FAINT, linewidth=0.5)
+        axes.set_axisbelow(True)
         for index, row in enumerate(self._rows):
             top, low = self._tops[index], self._tops[index + 1]
-            self._borders(axes, row, top, low)
+            if row.kind is not Kind.SEGMENTS:
+                axes.vlines(row.borders, top, low, colors="#a6a6a6", linewidth=0.6, zorder=0.9)
             {
                 Kind.HEADING: self._heading,
                 Kind.SEGMENTS: self._segments,
@@ -355,58 +353,23 @@ class Painter:
 
     def _legend(self) -> tuple[tuple[str, dict[str, Any]], ...]:
         kinds: dict[str, set[str]] = {}
-        for span in _spans(self._rows, Kind.SEGMENTS):
-            kinds.setdefault(span.kind or span.label, set()).add(span.label)
-        ordered = sorted(kinds, key=lambda each: (each == UNKNOWN, each))
-        out = [
-            (_with_names(kind, kinds[kind] - {kind}), Span(0.0, 0.0, kind, kind), Kind.SEGMENTS)
-            for kind in ordered
-        ]
+        for row in self._rows:
+            for span in row.spans if row.kind is Kind.SEGMENTS else ():
+                kinds.setdefault(span.kind or span.label, set()).add(span.label)
+        out = []
+        for kind in sorted(kinds, key=lambda each: (each == UNKNOWN, each)):
+            others = ", ".join(sorted(kinds[kind] - {kind}))
+            text = f"{kind} ({others})" if others else kind
+            out.append((text, self.look(Span(0.0, 0.0, kind, kind), Kind.SEGMENTS)))
         if any(
-            row.kind is Kind.NAMES and any(each.row < 0 for each in self._placed[index])
-            for index, row in enumerate(self._rows)
+            each.row < 0
+            for index, placed in self._placed.items()
+            for each in placed
+            if self._rows[index].kind is Kind.NAMES
         ):
-            looked = (Span(0.0, 0.0, name) for name in self._seen)
-            out += [(f"looks at {each.label}", each, Kind.NAMES) for each in looked]
-        return tuple((text, self.look(span, kind)) for text, span, kind in out)
-
-    @property
-    def _seconds_per_inch(self) -> float:
-        return self.duration_s / self.width
-
-    def _place(self, row: Row) -> tuple[Placed, ...]:
-        if row.kind not in POINTS:
-            return ()
-        return place(
-            row.spans,
-            seconds_per_inch=self._seconds_per_inch,
-            range_s=(0.0, self.duration_s),
-            points=POINTS[row.kind],
-            rows_above=ROWS_ABOVE[row.kind],
-        )
-
-    def _stack(self) -> list[float]:
-        """Upper edge of each row, and the lower edge of the last."""
-        tops = [0.0]
-        for index, row in enumerate(self._rows):
-            above = max((each.row for each in self._placed[index]), default=0)
-            gap = LINK_GAP_IN if row.kind is Kind.SEGMENTS and index else 0.0
-            tops.append(tops[-1] + gap + HEIGHTS_IN[row.kind] + LABEL_ROW_IN * max(above, 0))
-        return tops
-
-    def _frame(self, axes: "Axes") -> None:
-        for side in ("top", "left", "right"):
-            axes.spines[side].set_visible(False)
-        axes.spines["bottom"].set_color(QUIET)
-        axes.set_yticks([])
-        axes.tick_params(axis="x", colors=QUIET, labelsize=9, length=3)
-        axes.set_xlabel("time [s]", fontsize=9, color=QUIET, labelpad=2)
-        axes.grid(axis="x", color=FAINT, linewidth=0.5)
-        axes.set_axisbelow(True)
-
-    def _borders(self, axes: "Axes", row: Row, top: float, low: float) -> None:
-        if row.kind is not Kind.SEGMENTS:
-            axes.vlines(row.borders, top, low, colors="#a6a6a6", linewidth=0.6, zorder=0.9)
+            for name in self._seen:
+                out.append((f"looks at {name}", self.look(Span(0.0, 0.0, name), Kind.NAMES)))
+        return tuple(out)
 
     def _name(self, axes: "Axes", text: str, y: float, **style: Any) -> None:
         axes.annotate(
@@ -488,31 +451,6 @@ class Painter:
         self._name(axes, "0", low - 0.03, fontsize=7.5)
 
 
-def colour_of(kind: str) -> str:
-    """The colour of a kind of action: the same in every picture."""
-    return COLOURS.get(kind) or OTHERS[crc32(kind.encode()) % len(OTHERS)]
-
-
-def _with_names(kind: str, names: Collection[str]) -> str:
-    """A kind of action, and what else of that kind there is: ``MoveObj (Carry, Drink)``."""
-    return f"{kind} ({', '.join(sorted(names))})" if names else kind
-
-
-def _spans(rows: Sequence[Row], kind: Kind) -> Iterator[Span]:
-    return (each for row in rows if row.kind is kind for each in row.spans)
-
-
-def _labels(rows: Sequence[Row], kind: Kind) -> set[str]:
-    return {each.label for each in _spans(rows, kind)}
-
-
-def _peak(row: Row) -> float:
-    """The highest speed of a row [m/s]; zero where it has none."""
-    if row.curve is None or not np.isfinite(row.curve[1]).any():
-        return 0.0
-    return float(np.nanmax(row.curve[1]))
-
-
 SUFFIXES = {
     ".png": {"Software": None},
     ".svg": {"Date": None, "Creator": None},
@@ -553,32 +491,33 @@ def draw(observation: Observation, speeds: Speeds, *, path: Path, lost: Lost | N
     Raises:
         FileError: The suffix is another one, or the file cannot be written.
     """
+    save(lambda: _figure(observation, rows(observation, speeds, lost)), path)
+
+
+def svg(observation: Observation) -> str:
+    """The picture as the text of an SVG, without the speeds, which an observation does not hold."""
+    return _drawn(lambda: _figure(observation, rows(observation, {})), ".svg").decode("utf-8")
+
+
+def save(figure: "Callable[[], Figure]", path: Path) -> None:
+    """Make a figure with the settings of every picture, and write it in the format of the suffix.
+
+    Raises:
+        FileError: The suffix is no picture's, or the file cannot be written.
+    """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise FileError(
             path, f"no picture format {path.suffix!r};", f"there are: {', '.join(SUFFIXES)}."
         )
+    data = _drawn(figure, suffix)
     try:
-        _save(observation, rows(observation, speeds, lost), path, suffix)
+        path.write_bytes(data)
     except OSError as error:
         raise FileError(path, f"cannot be written: {error.strerror or error}.") from None
 
 
-def svg(observation: Observation) -> str:
-    """The picture as the text of an SVG, without the speeds, which an observation does not hold."""
-    out = BytesIO()
-    _save(observation, rows(observation, {}), out, ".svg")
-    return out.getvalue().decode("utf-8")
-
-
-def _save(
-    observation: Observation, content: Sequence[Row], where: Path | BytesIO, suffix: str
-) -> None:
-    save(lambda: _figure(observation, content), where, suffix)
-
-
-def save(figure: "Callable[[], Figure]", where: Path | BytesIO, suffix: str) -> None:
-    """Make a figure with the settings of every picture, and write it in the format of a suffix."""
+def _drawn(figure: "Callable[[], Figure]", suffix: str) -> bytes:
     import matplotlib as mpl
 
     settings: dict[Any, Any] = {
@@ -587,63 +526,74 @@ def save(figure: "Callable[[], Figure]", where: Path | BytesIO, suffix: str) -> 
         "hatch.linewidth": 0.6,
         "text.parse_math": False,
     }
+    out = BytesIO()
     with mpl.rc_context(rc={**dict(mpl.rcParamsDefault), **settings, "backend": "agg"}):
-        figure().savefig(where, dpi=DPI, metadata=SUFFIXES[suffix], format=suffix.removeprefix("."))
+        figure().savefig(out, dpi=DPI, metadata=SUFFIXES[suffix], format=suffix[1:])
+    return out.getvalue()
 
 
 def _figure(observation: Observation, content: Sequence[Row]) -> "Figure":
     """Lay the rows out, then the time axis, the legend and the footnote under them."""
+    name = observation.complex_par.name or observation.capture
+    capture = "" if name == observation.capture else f"{observation.capture} · "
+    subtitle = (
+        f"{capture}{' and '.join(map(spoken, performers(observation)))} · "
+        f"{observation.duration_s:.2f} s at {observation.rate_hz:.4g} Hz · "
+        f"{observation.profile} rules"
+    )
+    most = max((len(each.segments) for each in observation.links), default=0)
+    return _laid_out((name, subtitle), content, observation.duration_s, most=most, seen=observation)
+
+
+def _laid_out(
+    titles: tuple[str, str],
+    content: Sequence[Row],
+    duration_s: float,
+    *,
+    most: int,
+    seen: Observation | None = None,
+) -> "Figure":
+    """Rows under a title and a subtitle, wider where a row has many spans.
+
+    Args:
+        titles: Title and subtitle.
+        content: The rows.
+        duration_s: The time that is shown [s].
+        most: How many spans stand in a row at most.
+        seen: Whose legend and notes stand below; None for none.
+    """
     from matplotlib.figure import Figure
 
-    content = [_narrow(each) for each in content]
-    left = EDGE_IN + 0.15 + max(width_in(each.label, points=9.5) for each in content)
-    width = _width(observation, left)
-    painter = Painter(content, observation.duration_s, width - left - EDGE_IN - 0.1)
-    room = width - 2 * EDGE_IN
-    entries = [
-        (shortened(text, points=9.0, widest_in=room - 0.55), look) for text, look in painter.legend
+    content = [
+        replace(row, label=shortened(row.label, points=9.5, widest_in=LABEL_IN)) for row in content
     ]
-    legend = _flowed(entries, room)
-    notes = _notes(observation, content, width - 2 * EDGE_IN)
-    foot = 0.62 + 0.24 * len(legend) + NOTE_LINE_IN * len(notes) + (0.24 if notes else 0.12)
+    left = EDGE_IN + 0.15 + max(width_in(each.label, points=9.5) for each in content)
+    width = min(max(WIDTH_IN, left + 0.3 * most), WIDEST_IN)
+    painter = Painter(content, duration_s, width - left - EDGE_IN - 0.1)
+    room = width - 2 * EDGE_IN
+    legend: list[list[Entry]] = []
+    notes: list[str] = []
+    foot = 0.62
+    if seen is not None:
+        cut = [
+            (shortened(e, points=9.0, widest_in=room - 0.55), look) for e, look in painter.legend
+        ]
+        legend, notes = _flowed(cut, room), _notes(seen, content, room)
+        foot += 0.24 * len(legend) + NOTE_LINE_IN * len(notes) + (0.24 if notes else 0.12)
     height = TITLE_IN + painter.height + foot
     figure = Figure(figsize=(width, height), facecolor="white")
     axes = figure.add_axes(
         (left / width, foot / height, painter.width / width, painter.height / height)
     )
     painter.paint(axes)
-    _title(figure, observation, left)
+    heading: dict[str, Any] = {"fontsize": 14, "weight": "bold", "color": INK}
+    figure.text(left / width, 1 - 0.2 / height, titles[0], va="top", **heading)
+    figure.text(left / width, 1 - 0.47 / height, titles[1], va="top", fontsize=9, color=QUIET)
     _legend(figure, legend, top=foot - 0.62)
     for index, line in enumerate(reversed(notes)):
         place = (EDGE_IN / width, (0.12 + index * NOTE_LINE_IN) / height)
         figure.text(*place, line, fontsize=NOTE_POINTS, color=QUIET, va="bottom")
     return figure
-
-
-def _narrow(row: Row) -> Row:
-    """A row whose label leaves room for what it labels."""
-    return replace(row, label=shortened(row.label, points=9.5, widest_in=LABEL_IN))
-
-
-def _width(observation: Observation, left: float) -> float:
-    """Wider where a link has many segments [inches]."""
-    most = max((len(each.segments) for each in observation.links), default=0)
-    return min(max(WIDTH_IN, left + 0.3 * most), WIDEST_IN)
-
-
-def _title(figure: "Figure", observation: Observation, left: float) -> None:
-    width, height = figure.get_size_inches()
-    name = observation.complex_par.name or observation.capture
-    figure.text(
-        left / width, 1 - 0.2 / height, name, fontsize=14, weight="bold", color=INK, va="top"
-    )
-    who = " and ".join(map(spoken, performers(observation)))
-    capture = "" if name == observation.capture else f"{observation.capture} · "
-    text = (
-        f"{capture}{who} · {observation.duration_s:.2f} s at "
-        f"{observation.rate_hz:.4g} Hz · {observation.profile} rules"
-    )
-    figure.text(left / width, 1 - 0.47 / height, text, fontsize=9, color=QUIET, va="top")
 
 
 def _flowed(entries: Sequence[Entry], width: float) -> list[list[Entry]]:
@@ -701,11 +651,6 @@ def _notes(observation: Observation, content: Sequence[Row], width: float) -> li
     return [line for note in notes for line in wrap(note, columns, subsequent_indent="   ")]
 
 
-TITLE_IN_COMPARISON = 0.75
-FOOT_IN_COMPARISON = 0.62
-DIFFERS = "differs"
-
-
 @dataclass(frozen=True)
 class Lane:
     """What one channel shows, each part as spans of time with a name."""
@@ -732,57 +677,14 @@ def draw_comparison(
     Raises:
         FileError: The suffix is another one, or the file cannot be written.
     """
-    import matplotlib as mpl
-
-    suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        known = ", ".join(SUFFIXES)
-        raise FileError(path, f"no picture format {path.suffix!r};", f"there are: {known}.")
-    settings: dict[Any, Any] = {
-        "svg.hashsalt": "capar", "font.family": "DejaVu Sans", "text.parse_math": False,
-    }  # fmt: skip
-    with mpl.rc_context(rc={**dict(mpl.rcParamsDefault), **settings, "backend": "agg"}):
-        figure = _figure_comparison(title, subtitle, comparison_rows(lanes), duration_s)
-        try:
-            figure.savefig(
-                path, dpi=DPI, metadata=SUFFIXES[suffix], format=suffix.removeprefix(".")
-            )
-        except OSError as error:
-            raise FileError(path, f"cannot be written: {error.strerror or error}.") from None
-
-
-def comparison_rows(lanes: Sequence[Lane]) -> tuple[Row, ...]:
-    """The rows of each lane: segments where there are some, what was found, labels, differences."""
-    out: list[Row] = []
+    content: list[Row] = []
     for lane in lanes:
         head = Kind.SEGMENTS if lane.segments else Kind.HEADING
-        out.append(Row(head, lane.name, lane.segments))
-        out.append(Row(Kind.NAMES, "found", lane.found))
-        out.append(Row(Kind.NAMES, "labelled", lane.true))
-        out.append(Row(Kind.BARS, DIFFERS, lane.wrong))
-    return tuple(out)
-
-
-def _figure_comparison(
-    title: str, subtitle: str, content: Sequence[Row], duration_s: float
-) -> "Figure":
-    from matplotlib.figure import Figure
-
-    left = EDGE_IN + 0.15 + min(max(width_in(each.label, points=9.5) for each in content), LABEL_IN)
+        content += [
+            Row(head, lane.name, lane.segments),
+            Row(Kind.NAMES, "found", lane.found),
+            Row(Kind.NAMES, "labelled", lane.true),
+            Row(Kind.BARS, "differs", lane.wrong),
+        ]
     most = max((len(each.spans) for each in content), default=0)
-    width = min(max(WIDTH_IN, left + 0.3 * most), WIDEST_IN)
-    painter = Painter(content, duration_s, width - left - EDGE_IN - 0.1)
-    height = TITLE_IN_COMPARISON + painter.height + FOOT_IN_COMPARISON
-    figure = Figure(figsize=(width, height), facecolor="white")
-    axes = figure.add_axes(
-        (left / width, FOOT_IN_COMPARISON / height, painter.width / width, painter.height / height)
-    )
-    painter.paint(axes)
-    heading = {"fontsize": 14, "weight": "bold", "color": INK}
-    for text, down, style in (
-        (title, 0.2, heading),
-        (subtitle, 0.47, {"fontsize": 9, "color": QUIET}),
-    ):
-        look: dict[str, Any] = dict(style)
-        figure.text(left / width, 1 - down / height, text, va="top", **look)
-    return figure
+    save(lambda: _laid_out((title, subtitle), content, duration_s, most=most), path)
