@@ -10,7 +10,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 
 from capar.model.errors import CaparError
 from kb.language.instruction import Window
-from kb.language.vocabulary import Vocabulary, of_class
+from kb.language.vocabulary import Vocabulary, is_nominal, of_class
 from kb.lexicon.english import Form
 
 SHOWN = 12
@@ -165,12 +165,8 @@ class Reader:
     def begins_noun(self, ahead: int = 0) -> bool:
         """Whether a noun phrase may begin at a word to come."""
         word = self.peek(ahead)
-        if word in RELATIVES - {"whom"}:
-            return False
-        classes = ("determiner", "pronoun", "person", "limb")
-        return any(word == words[0] for name in classes for words in of_class(name)) or (
-            not self.stops(ahead)
-        )
+        relative = word in RELATIVES - {"whom"}
+        return not relative and (is_nominal(word) or not self.stops(ahead))
 
     def verb_forms(self, ahead: int = 0) -> frozenset[Form]:
         """The forms of verbs that the next word may be."""

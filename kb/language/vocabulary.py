@@ -137,6 +137,12 @@ def of_class(name: str) -> Mapping[tuple[str, ...], str]:
     }
 
 
+def is_nominal(word: str) -> bool:
+    """Whether a noun phrase that is no name of an object may begin with a word: ``the``."""
+    classes = ("determiner", "pronoun", "person", "limb")
+    return any(word == words[0] for name in classes for words in of_class(name))
+
+
 EE, OTHER = -1, 0
 """Places of an end-effector and of what no tracker follows, beside those of objects."""
 
@@ -207,6 +213,12 @@ def sentence(value: Instruction | Step | Segment, vocabulary: Vocabulary | None 
         text += f" with {EVERYTHING if said.ee == 'all' else the(said.ee)}"
     if call.purpose:
         words = words_of(call.purpose)
-        plain = name_of(words) == call.purpose and words.replace(" ", "").isalpha()
+        single = words.split() or [""]
+        plain = (
+            name_of(words) == call.purpose
+            and words.replace(" ", "").isalpha()
+            and not is_nominal(single[0])
+            and not {"it", "them", "with", "and", "then", "while"}.intersection(single)
+        )
         text += f" to {words}" if plain else f" for {json.dumps(call.purpose)}"
     return f"{the(said.agent)}, {text}." if said.agent else f"{capital(text)}."
