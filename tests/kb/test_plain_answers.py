@@ -188,22 +188,6 @@ def test_a_thing_is_told_to_be_moved_as_long_as_it_is_away(
             assert float(str(row["moved"])) <= float(str(row["held"])) <= float(str(row["touched"]))
 
 
-def test_a_body_is_told_to_be_where_it_was(world: World, actionary: Actionary) -> None:
-    compared = 0
-    for capture in world.captures.values():
-        for body in (*capture.sensors, *capture.objects):
-            for time in np.linspace(0.1, 0.9, 7) * capture.times[-1]:
-                frames = np.searchsorted(capture.times, time) + np.array([-1, 0])
-                if body.stream.lost[max(0, frames[0] - 30) : frames[1] + 30].any():
-                    continue
-                near = [np.interp(time, capture.times, axis) for axis in body.stream.positions.T]
-                (row,) = actionary.ask("place", capture=capture.name, body=body.name, time=time)
-                told = np.array([row[axis] for axis in "xyz"], dtype=float)
-                assert np.linalg.norm(told - near) < 0.01, (capture.name, body.name, time)
-                compared += 1
-    assert compared > 50
-
-
 def test_the_highest_speed_of_a_reach_is_that_of_the_poses(
     world: World, actionary: Actionary
 ) -> None:

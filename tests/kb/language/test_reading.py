@@ -149,9 +149,10 @@ def test_every_phrase_of_a_description_is_read_as_a_primitive_that_has_it() -> N
         plain = pattern.replace(" back", "").replace(" there", "")
         names = {row["primitive"] for row in rows if row["pattern"] in {pattern, plain}}
         assert step.call.action in names, text
-        assert step.call.objects[: pattern.count("2") + 1] == ("mug", "table")[
-            : pattern.count("2") + 1
-        ]
+        assert (
+            step.call.objects[: pattern.count("2") + 1]
+            == ("mug", "table")[: pattern.count("2") + 1]
+        )
 
 
 @pytest.fixture(scope="module")
