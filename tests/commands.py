@@ -26,7 +26,7 @@ LOADED = (
     "capar.pipelines.observation",
     "capar.regeneration.search",
     "capar.views.picture",
-    "capar_rules.explain.why_not",
+    "capar_rules.explain.explanation",
     "extractors.readers.bundle.capture_toml",
     "kb.actionary",
 )

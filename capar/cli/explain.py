@@ -25,9 +25,8 @@ def explain(
     ] = None,
     why_not: Annotated[
         str | None,
-        Option(help="Another name: its nearest rule and what it lacks, and the smallest change."),
+        Option(help="Another name: its nearest rule, and the conditions that fail."),
     ] = None,
-    every: Annotated[bool, Option("--all", help="With --why-not: all answers.")] = False,
     profile: ProfileName = "extended",
     rules: Rules = None,
     actionary: Beside = None,
@@ -58,7 +57,7 @@ def explain(
     asked = chosen(observation, segment or "")
     alone = "/" in (segment or "")
     if why_not:
-        _why_not(why_not, asked, seen, json=json, alone=alone, limit=100 if every else 1)
+        _why_not(why_not, asked, seen, json=json, alone=alone)
         return
     told = seen.explain(asked)
     if svg:
@@ -97,38 +96,29 @@ def _why_not(
     *,
     json: bool,
     alone: bool,
-    limit: int,
 ) -> None:
-    """Print of each segment what it lacks for a name, as many smallest changes as asked for."""
+    """Print of each segment what the nearest rule for a name lacks."""
     from dataclasses import asdict
 
     from capar.views.explanation_text import condition_table, header, notices_about
-    from capar_rules.explain.why_not import why_not
 
     rows = []
     asked = [one for one in chosen if alone or one.name != name]
     for one in asked:
-        found = why_not(seen.explainer, one, name, limit=limit)
-        near = () if name in one.general else seen.nearest_rules(one, name)
+        near = seen.why_not(one, name)
         if json:
             about = [notice.document() for notice in notices_about([one], seen.observation)]
-            told = {"ee": one.ee, "index": one.index, "is": one.name, "notices": about}
             rules = [asdict(rule) | {"sentence": rule.sentence} for rule in near]
-            rows += [
-                told | {"sentence": each.sentence, "rules": rules} | _placed(asdict(each), seen)
-                for each in found
-            ]
+            told = {"ee": one.ee, "index": one.index, "is": one.name, "notices": about}
+            rows.append(_placed(told | {"name": name, "rules": rules}, seen))
             continue
         if not alone:
             typer.echo(f"{header(one)}  {one.name}")
         for rule in near:
-            if rule.failing:
-                lines = "\n".join(condition_table(rule.failing))
-                typer.echo(f"Nearest rule: {rule.rule} lacks\n{lines}")
-        for each in found:
-            typer.echo(each.sentence)
-        if not found:
-            typer.echo(f"Nothing between these borders could have been {name}.")
+            lines = "\n".join(condition_table(rule.failing))
+            typer.echo(f"Nearest rule: {rule.rule} lacks\n{lines}" if lines else rule.sentence)
+        if not near:
+            typer.echo(f"No rule for {name} comes near: each lacks several conditions.")
     if json:
         print_json(rows)
     else:

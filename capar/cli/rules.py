@@ -341,7 +341,6 @@ def list_words(
             "meaning": word.meaning,
             "file": word.file,
             "line": word.line,
-            "needs": found.needed(word.signature),
             "defined": [str(each) for each in found.rules_of(word.signature)],
         }
         for word in (found.find(name) if name else found.words)
@@ -438,9 +437,6 @@ def _word_lines(found: "Glossary", name: str) -> Iterator[str]:
         yield f"{each}  {each.meaning}"
         yield f"  explained in {each.file}:{each.line}" if each.line else f"  in {each.file}"
     for signature in dict.fromkeys(word.signature for word in words):
-        if ways := found.needed(signature):
-            told = "; or ".join(", ".join(way) for way in ways)
-            yield f"  an example needs, beside frames, links and tags: {told}"
         for place in found.rules_of(signature):
             lines = Path(place.file).read_text(encoding="utf-8").splitlines()[place.line - 1 :]
             ends = (at for at, each in enumerate(lines, 1) if each.rstrip().endswith("."))

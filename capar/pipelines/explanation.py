@@ -11,6 +11,7 @@ import numpy as np
 
 from capar.model.body_names import body_names
 from capar.model.capture import Capture
+from capar.model.errors import RuleError, UnknownNameError
 from capar.model.observation import Observation, Segment, SegmentAddress, find_segment
 from capar.pipelines.measures import Measures, Series
 from capar.pipelines.observation import observe_measured
@@ -23,8 +24,6 @@ from capar_rules.explain.conditions import Condition, Measured
 from capar_rules.explain.explanation import Explainer, Explanation
 from capar_rules.explain.nearest import NearRule
 from capar_rules.explain.quantities import QUANTITIES
-from capar_rules.explain.why_not import Alternative
-from capar_rules.explain.why_not import why_not as alternatives
 from extractors.measure import measure
 
 AROUND_S = 1.0
@@ -60,14 +59,24 @@ class Explained:
             for told in self.explainer.explain_all(segments)
         )
 
-    def nearest_rules(self, segment: Segment, name: str) -> list[NearRule]:
-        """The rule that could give a segment another name, with the conditions that fail.
+    def why_not(self, segment: Segment, name: str) -> list[NearRule]:
+        """The rule that comes nearest to giving a segment another name, with what it lacks.
+
+        Nothing where every rule for the name lacks more than ``MOST_ASKED`` conditions.
 
         Raises:
-            RuleError: The segment does not follow from the facts and rules.
+            UnknownNameError: No rule gives that name.
+            RuleError: The segment has that name, or does not follow from the facts and rules.
         """
+        names = {rule.name for rule in rules_of(self.explainer.profile)}
+        if name not in names:
+            raise UnknownNameError("primitive", name, names)
+        if name == segment.name:
+            raise RuleError(f"segment {segment.index} of {segment.ee!r} is {name} already")
         found = self.explainer.nearest_rules(segment, name)
-        return [replace(one, failing=self._filled(one.failing)) for one in found]
+        return [
+            one if one.vague else replace(one, failing=self._filled(one.failing)) for one in found
+        ]
 
     def _filled(self, conditions: Sequence[Condition]) -> tuple[Condition, ...]:
         return tuple(map(self.measures.completed, conditions))
@@ -122,28 +131,22 @@ def explain(
 
 
 def why_not(
-    capture: Capture | Path | str,
-    segment: str,
-    name: str,
-    *,
-    rules: Profile | str = DEFAULT,
-    limit: int = 1,
-) -> tuple[Alternative, ...]:
-    """The smallest changes that would have given a segment of a capture another name.
+    capture: Capture | Path | str, segment: str, name: str, *, rules: Profile | str = DEFAULT
+) -> list[NearRule]:
+    """The rule that comes nearest to giving a segment of a capture another name.
 
     Args:
         capture: A capture, or where to read it.
         segment: Such as ``right_hand/3``.
         name: The name that it has not.
         rules: A rule profile or its name.
-        limit: How many equally small answers to give, at most.
 
     Raises:
         UnknownNameError: There is no such segment, or no rule gives that name.
         RuleError: The segment has that name.
     """
     seen = explained(trial_of(capture), rules=rules)
-    return alternatives(seen.explainer, segment_named(seen.observation, segment), name, limit=limit)
+    return seen.why_not(segment_named(seen.observation, segment), name)
 
 
 def chosen(observation: Observation, text: str) -> tuple[Segment, ...]:

@@ -8,7 +8,7 @@ from capar.model.facts import Fact
 from capar.model.observation import Observation
 from capar.pipelines.observation import facts_program, observe_again
 from capar_rules.authoring.user_primitives import checked_draft
-from capar_rules.authoring.user_rules import put_back, take_away, unbroken
+from capar_rules.authoring.user_rules import unbroken
 from capar_rules.engine.profiles import Profile
 from capar_rules.lint.checking import admitted_profile
 from capar_rules.pars.inference import infer
@@ -206,11 +206,11 @@ def remove_reclassifying(
     with Actionary.open(actionary) as store:
         effect, renewed = _planned(store, after, captures)
         with unbroken():
-            aside = take_away(path)
+            aside = path.replace(path.with_suffix(".removed"))
             try:
                 replace_all(store.store, renewed)
             except BaseException:
-                put_back(aside, path)
+                aside.replace(path)
                 raise
             aside.unlink()
     return effect

@@ -10,11 +10,10 @@ from capar.model.observation import ObservedLink, Segment, find_segment, split_c
 from capar.model.par import FeatureSet
 from capar.pipelines.observation import facts_program
 from capar_rules.authoring.drafting import bits_of, distinction, excerpt, fitting, written_rule
-from capar_rules.authoring.glossary import required_facts
 from capar_rules.authoring.user_primitives import LACKING, Example, new_rule, rules_of, written
 from capar_rules.borders.border_numbers import Tick, number_borders
 from capar_rules.engine.profiles import Profile, profile
-from capar_rules.engine.syntax import FITS, Statement, parse, parse_text, signatures_below
+from capar_rules.engine.syntax import parse, parse_text
 from capar_rules.lint.checking import admitted_profile
 from capar_rules.lint.text_checks import known
 from capar_rules.lint.world_checks import rivals
@@ -130,10 +129,9 @@ def _examples(
         draft.write_text(text, encoding="utf-8")
         joined = admitted_profile(rules.name, added=(*rules.added, draft), steady=rules.steady)
         links = infer(measured, profile=joined).links
-        kept = _needed(parse([draft]), joined)
         out = []
         for link, each in _shown(links, segment, name):
-            short = excerpt(measured, link, each, rules=joined, name=name, kept=kept)
+            short = excerpt(measured, link, each, rules=joined, name=name)
             facts, names = short or (tuple(measured), tuple(one.name for one in link.segments))
             positive = each.name == name
             if positive or name not in names:
@@ -142,14 +140,6 @@ def _examples(
                 )
                 out.append(written(Example(story, positive, facts, ((link.ee, names),), 0)))
         return out
-
-
-def _needed(draft: Sequence[Statement], joined: Profile) -> frozenset[str]:
-    """Predicates of the facts that the words of a drafted rule are defined by."""
-    rules = parse(joined.files)
-    needs = required_facts(rules, measured=known(rules).measured)
-    words = signatures_below(each for each in draft if each.kind == "rule") - {FITS}
-    return frozenset(name for word in words for way in needs.get(word, ()) for name in way)
 
 
 def _shown(

@@ -1,8 +1,7 @@
 """What a drafted rule needs: the fewest telling conditions, and short examples."""
 
 import re
-import textwrap
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
 
@@ -25,16 +24,10 @@ _CONDITION = re.compile(r"^condition\(Segment\) :- (.+)\.$", re.MULTILINE)
 
 @dataclass(frozen=True)
 class Distinction:
-    """The conditions that tell a segment from others, and those that were left out."""
+    """The conditions that tell a segment from others."""
 
     chosen: tuple[str, ...]
     """The fewest that tell it from each that can be told apart; of equals those listed first."""
-
-    common: tuple[str, ...]
-    """Left out: every other segment fulfils them too."""
-
-    spare: tuple[str, ...]
-    """Left out: whatever they tell it from, the chosen ones do."""
 
     others: int
     """From how many segments it is told."""
@@ -78,26 +71,14 @@ def fitting(name: str) -> str:
 
 
 def written_rule(name: str, found: Distinction, given: Sequence[str]) -> str:
-    """The rule of a distinction, with what it is told from and what was left out in a comment."""
+    """The rule of a distinction, with how many others it is told from in a comment."""
     body = ",\n    ".join([*given, *found.chosen])
     told = found.others - found.alike
     text = f"% The fewest conditions that tell it from {told} of the {found.others} others observed"
     text += "\n% that fit the same more general primitive.\n" if given else ".\n"
     if found.alike:
         text += f"% From {found.alike} of them nothing tells it: look for a word that does.\n"
-    if found.common:
-        text += _left_out("all of them fulfil it too", found.common)
-    if found.spare:
-        text += _left_out("it tells apart none that these do not", found.spare)
     return f'{text}fits(Segment, "{name}") :-\n    {body}.\n'
-
-
-def _left_out(reason: str, bits: Sequence[str]) -> str:
-    listed = textwrap.fill(
-        "  ".join(each.replace(" ", "\0") for each in bits),
-        96, initial_indent="%   ", subsequent_indent="%   ", break_long_words=False,
-    ).replace("\0", " ")  # fmt: skip
-    return f"% Left out, as {reason}:\n{listed}\n"
 
 
 def distinction(
@@ -118,7 +99,8 @@ def distinction(
     wider = {
         bit
         for bit in usable
-        if telling[bit] or (not _implied(bit, given) and any(bit not in each for each in others))
+        if telling[bit]
+        or (not (given and bit.startswith(OF_FEATURES)) and any(bit not in each for each in others))
     }
     told = {at for places in telling.values() for at in places}
     lines = [f"bit({number}). " for number, bit in enumerate(usable) if bit in wider]
@@ -126,22 +108,11 @@ def distinction(
     lines += [f"other({at})." for at in sorted(told)]
     (best,) = optima("\n".join([*lines, _PROGRAM]), [("chosen", 1)]) if wider else [frozenset()]
     chosen = sorted(int(str(number)) for _, (number,) in best)
-    left = [bit for number, bit in enumerate(usable) if number not in chosen]
-    return Distinction(
-        tuple(usable[number] for number in chosen),
-        tuple(bit for bit in left if not telling[bit]),
-        tuple(bit for bit in left if telling[bit]),
-        len(rest),
-        len(rest) - len(told),
-    )
+    return Distinction(tuple(usable[number] for number in chosen), len(rest), len(rest) - len(told))
 
 
 OF_FEATURES = ("possessing(", "touched_at(", "occupied(", "free(", "kind(")
 """Prefixes of conditions that the features of a primitive may imply."""
-
-
-def _implied(bit: str, given: Sequence[str]) -> bool:
-    return any(given) and bit.startswith(OF_FEATURES)
 
 
 _PROGRAM = """
@@ -177,7 +148,6 @@ def excerpt(
     *,
     rules: Profile,
     name: str,
-    kept: Collection[str] = (),
 ) -> tuple[tuple[Fact, ...], Names] | None:
     """Facts about a segment and its neighbours, as few as name it alike, and the names they give.
 
@@ -187,8 +157,6 @@ def excerpt(
         segment: One of the link's segments.
         rules: The rules, the drafted one among them.
         name: Which name must be given as often as the rules give it to the whole excerpt.
-        kept: Predicates whose facts stay even where the names do not need them: in a long excerpt
-            those at the borders of its segments, in one too long with these none.
 
     Returns:
         The facts, with frames counted from the excerpt's first one; None if no cut keeps the name.
@@ -205,13 +173,7 @@ def excerpt(
             return names if names.count(name) == wanted else None
 
         if told(cut) == tuple(each.name for each in near):
-            borders = {frame - near[0].first for each in near for frame in (each.first, each.last)}
-            staying = {
-                str(each)
-                for each in cut
-                if type(each).predicate in kept and getattr(each, "frame", 0) in {0, *borders}
-            }
-            few = _shortened(cut, told, kept, staying)
+            few = _shortened(cut, told)
             return few, told(few) or ()
     return None
 
@@ -283,24 +245,18 @@ def _shifted(fact: Fact, first: int, last: int) -> Fact:
 
 
 def _shortened(
-    facts: tuple[Fact, ...],
-    told: Callable[[Sequence[Fact]], Names | None],
-    kept: Collection[str],
-    staying: Collection[str],
+    facts: tuple[Fact, ...], told: Callable[[Sequence[Fact]], Names | None]
 ) -> tuple[Fact, ...]:
-    """Fewer facts of which the same is told: whole kinds go first, then some of what is left."""
+    """Fewer facts of which the same is told: whole kinds go first, then single facts."""
     names = told(facts)
 
     def alike(some: Sequence[Fact]) -> bool:
         return told(some) == names
 
-    kinds = sorted({type(each).predicate for each in facts} - {*NEEDED, *kept})
+    kinds = sorted({type(each).predicate for each in facts} - {*NEEDED})
     few = _without(facts, [{each} for each in kinds], alike, key=lambda each: type(each).predicate)
-    spare = [each for each in few if type(each).predicate not in NEEDED]
-    for some in ([each for each in spare if str(each) not in staying], spare):
-        if len(few) > MOST_FACTS:
-            few = _without(few, [{str(each)} for each in some], alike, key=str)
-    return few
+    spare = [{str(each)} for each in few if type(each).predicate not in NEEDED]
+    return _without(few, spare, alike, key=str) if len(few) > MOST_FACTS else few
 
 
 def _without(

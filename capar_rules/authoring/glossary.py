@@ -6,96 +6,16 @@ to its file.
 """
 
 import re
-from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from difflib import get_close_matches
-from itertools import chain
 from pathlib import Path
 
 from capar.model.errors import UnknownNameError
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.solver import rule_file
-from capar_rules.engine.syntax import Literal, Place, Signature, Statement, parse, split_arguments
+from capar_rules.engine.syntax import Place, Signature, parse, split_arguments
 from capar_rules.lint.text_checks import known
-
-NUMBERED: Mapping[str, frozenset[str]] = {
-    "tick": frozenset(),
-    "last_tick": frozenset(),
-    "within": frozenset({"touching"}),
-    "moves_between": frozenset({"moving"}),
-    "moves_during": frozenset({"touching", "moving"}),
-    "free_between": frozenset({"touching"}),
-    "undisturbed": frozenset({"resting"}),
-    "shares": frozenset({"touching"}),
-    "meanwhile": frozenset({"touching"}),
-    "sets_off": frozenset({"moving"}),
-    "settles": frozenset({"moving"}),
-    "lands": frozenset({"touching"}),
-    "leaves": frozenset({"touching"}),
-}
-"""Inputs numbered by ``capar_rules.borders``, each with the measured facts that they come from."""
-
-STRETCHES = ("spans", "encloses")
-"""Inputs that number a stretch, which their second argument names."""
-
-GIVEN = frozenset({"frames", "rate_mhz", "link", "tag"})
-"""What every example states anyway."""
-
-
-Ways = tuple[tuple[str, ...], ...]
-"""Predicates of measured facts, one set for each way to define a word."""
-
-
-def required_facts(
-    rules: Sequence[Statement], *, measured: frozenset[Signature]
-) -> Mapping[Signature, Ways]:
-    """The measured facts that each word of a rule base needs.
-
-    Only conditions without ``not`` need facts. Of a way whose facts include those of another one
-    nothing is said.
-
-    Args:
-        rules: A rule base.
-        measured: The predicates of ``inputs.lp``.
-    """
-    heads: dict[Signature, list[Statement]] = defaultdict(list)
-    for rule in rules:
-        for head in rule.heads:
-            heads[head.signature].append(rule)
-    names = {name for name, _ in measured}
-    everything = frozenset(names | {"lies"})
-    needs: dict[Signature, frozenset[str]] = defaultdict(lambda: everything)
-
-    def of_literal(literal: Literal) -> frozenset[str]:
-        atom = literal.atoms[0]
-        name = atom.signature[0]
-        if atom.signature not in measured:
-            return needs[atom.signature] if atom.signature in heads else frozenset()
-        if name in STRETCHES:
-            stretch = split_arguments(atom.text)[1]
-            told = stretch if stretch in names else "lies"
-            return frozenset({told} if stretch[:1].islower() else ())
-        return NUMBERED.get(name, frozenset({name}))
-
-    def of_rule(rule: Statement) -> frozenset[str]:
-        plain = (each for each in rule.body if each.kind == "atom" and not each.sign)
-        return frozenset(chain.from_iterable(map(of_literal, plain)))
-
-    changed = True
-    while changed:
-        changed = False
-        for signature, ways in heads.items():
-            found = frozenset.intersection(needs[signature], *map(of_rule, ways))
-            changed = changed or found != needs[signature]
-            needs[signature] = found
-    return {word: _least({of_rule(rule) - GIVEN for rule in heads[word]}) for word in heads}
-
-
-def _least(ways: set[frozenset[str]]) -> Ways:
-    least = [way for way in ways if not any(other < way for other in ways)]
-    return tuple(sorted(tuple(sorted(way)) for way in least))
-
 
 _ATOM = r"[a-z_]\w*\((?:[^()]|\([^()]*\))*\)"
 _DEFINED = re.compile(
@@ -180,7 +100,11 @@ def _entries(text: str) -> Iterator[tuple[int, str, str]]:
                 if entry:
                     yield entry
                     before = entry[2]
-                entry = number, found[1], _continued(before, (found[2] or "").strip())
+                meaning = (found[2] or "").strip()
+                if before and meaning.startswith("..."):  # the meaning of the entry before
+                    rest = meaning.removeprefix("...").strip()
+                    meaning = f"{before}{' ' if rest.startswith('and ') else '; '}{rest}"
+                entry = number, found[1], meaning
             elif entry and indent > _INDENT:
                 entry = *entry[:2], f"{entry[2]} {line.strip()}"
             elif entry:
@@ -188,14 +112,6 @@ def _entries(text: str) -> Iterator[tuple[int, str, str]]:
                 entry, before = None, ""
         if entry:
             yield entry
-
-
-def _continued(before: str, meaning: str) -> str:
-    """The meaning; three dots at its start stand for the meaning of the entry before."""
-    rest = meaning.removeprefix("...").strip()
-    if rest == meaning or not before:
-        return meaning
-    return f"{before}{' ' if rest.startswith('and ') else '; '}{rest}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,9 +129,6 @@ class Glossary:
 
     primitives: frozenset[str]
     """The names of the primitives."""
-
-    needs: Mapping[Signature, Ways]
-    """The predicates of measured facts that each predicate needs, for each way to define it."""
 
     def find(self, name: str) -> tuple[Word, ...]:
         """The explanations of a word; several files may explain one.
@@ -235,15 +148,6 @@ class Glossary:
             names = {each.name for each in self.words} | {word for _, (word, _) in self.internal}
             raise UnknownNearError(name, names)
         return found
-
-    def needed(self, signature: Signature) -> tuple[tuple[str, ...], ...]:
-        """The measured facts that an example of a word needs, one set for each way to define it.
-
-        Each is written with its arguments.
-        """
-        forms = {each.name: str(each) for each in self.words if each.file == INPUTS}
-        ways = self.needs.get(signature, ())
-        return tuple(tuple(forms[name] for name in way) for way in ways if way)
 
     def rules_of(self, signature: Signature) -> tuple[Place, ...]:
         """The places of the rules that define a predicate."""
@@ -283,7 +187,11 @@ def glossary(rules: Profile) -> Glossary:
     others = {each.place.file for each in statements if each.place.file} - {*first}
     mine = [str(each) for each in rules.added]
     ordered = [*first, *sorted(others - {*mine}), *mine]
-    words = [word for each in ordered for word in words_of_file(Path(each))]
+    words = [
+        word
+        for each in ordered
+        for word in words_of_text(Path(each).read_text(encoding="utf-8"), file=_short(each))
+    ]
     stated = [
         Word("any rule file", 0, text.partition("(")[0], tuple(split_arguments(text)), meaning)
         for text, meaning in STATED
@@ -300,13 +208,7 @@ def glossary(rules: Profile) -> Glossary:
         tuple(sorted(internal)),
         tuple((head.signature, each.place) for each in statements for head in each.heads),
         frozenset(vocabulary.primitives),
-        required_facts(statements, measured=vocabulary.measured),
     )
-
-
-def words_of_file(path: Path) -> tuple[Word, ...]:
-    """The words that a rule file explains."""
-    return tuple(words_of_text(path.read_text(encoding="utf-8"), file=_short(str(path))))
 
 
 def _short(file: str) -> str:

@@ -25,10 +25,10 @@ from capar.model.par import FeatureSet
 from capar_rules.authoring.user_rules import actionary_rules, make_folder, taught
 from capar_rules.authoring.user_rules import user_rules as user_rules
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
-from capar_rules.engine.syntax import FITS, Statement, parse, parse_text, split_arguments
+from capar_rules.engine.syntax import FITS, parse, parse_text, split_arguments, stated
 from capar_rules.lint.checking import admitted_profile, check, require
 from capar_rules.lint.findings import errors
-from capar_rules.lint.text_checks import known, read_rules
+from capar_rules.lint.text_checks import PRIMITIVE, known, read_rules
 from capar_rules.lint.world_checks import rivals
 from capar_rules.pars.inference import infer
 
@@ -56,36 +56,28 @@ def rules_of(base: Profile, *, actionary: str | Path | None = None) -> tuple[Rul
     """
     statements = parse(base.files)
     mine = actionary_rules(actionary)
-    origins = {
-        str(each): "user" if mine and each.resolve().parent == mine.resolve() else "project"
-        for each in base.added
-    }
-    verbs = dict(_pairs(statements, "verb"))
+    verbs: dict[str, str] = {}
+    for name, verb in stated(statements, ("verb", 2)):
+        verbs[name] = verb
     general: dict[str, list[str]] = {}
-    for name, other in _pairs(statements, "specialises"):
+    for name, other in stated(statements, ("specialises", 2)):
         general.setdefault(name, []).append(other)
     heads: dict[str, str] = {}
     for each in statements:
         if each.kind == "comment":
-            heads.setdefault(each.place.file, each.text)
-    found = [
-        RuleInfo(
-            split_arguments(statement.heads[0].text)[0].strip('"'),
-            origins.get(statement.place.file, "core"),
-            statement.place.file,
-            _definition(heads.get(statement.place.file, "")),
-            "",
-            (),
-        )
-        for statement in statements
-        if statement.heads and statement.heads[0].signature == ("primitive", 1)
-    ]
-    return tuple(
-        sorted(
-            replace(each, verb=verbs.get(each.name, ""), general=tuple(general.get(each.name, ())))
-            for each in found
-        )
-    )
+            text = " ".join(each.text.strip("%* \n").split())
+            heads.setdefault(each.place.file, text.partition(": ")[2] or text)
+    added = {str(each): each for each in base.added}
+    found = []
+    for each in statements:
+        for (name,) in stated([each], PRIMITIVE):
+            file, origin = each.place.file, "core"
+            if file in added:
+                own = mine and added[file].resolve().parent == mine.resolve()
+                origin = "user" if own else "project"
+            definition, above = heads.get(file, ""), tuple(general.get(name, ()))
+            found.append(RuleInfo(name, origin, file, definition, verbs.get(name, ""), above))
+    return tuple(sorted(found))
 
 
 def rule_of(base: Profile, name: str, *, actionary: str | Path | None = None) -> RuleInfo:
@@ -100,19 +92,6 @@ def rule_of(base: Profile, name: str, *, actionary: str | Path | None = None) ->
     return known[name]
 
 
-def _pairs(statements: Sequence[Statement], predicate: str) -> Iterator[tuple[str, str]]:
-    for statement in statements:
-        for head in statement.heads:
-            if head.signature == (predicate, 2):
-                first, second = split_arguments(head.text)
-                yield first.strip('"'), second.strip('"')
-
-
-def _definition(comment: str) -> str:
-    text = " ".join(comment.strip("%* \n").split())
-    return text.partition(": ")[2] or text
-
-
 _LIKELY = re.compile(r'\bprimitive\s*\(\s*"([^"\n]*)"\s*\)\s*\.')
 
 
@@ -124,14 +103,7 @@ def introduced(path: Path) -> list[str]:
     reading = read_rules(path, folders=(path.parent,))
     if reading.findings:
         return list(dict.fromkeys(_LIKELY.findall(reading.text)))
-    return list(
-        dict.fromkeys(
-            split_arguments(head.text)[0].strip('"')
-            for each in reading.statements
-            for head in each.heads
-            if head.signature == ("primitive", 1)
-        )
-    )
+    return list(dict.fromkeys(name for (name,) in stated(reading.statements, PRIMITIVE)))
 
 
 ORDERING = (("specialises", 2), ("precedes", 2))
@@ -146,26 +118,20 @@ def dependants(path: Path, *, files: Sequence[Path]) -> dict[str, Path]:
     names = set(introduced(path))
     found: dict[str, Path] = {}
     for each in files:
-        if each.resolve() != path.resolve():
-            reading = read_rules(each, folders=(each.parent,))
-            if any(names & _read(rule) for rule in reading.statements):
+        if each.resolve() == path.resolve():
+            continue
+        for rule in read_rules(each, folders=(each.parent,)).statements:
+            atoms = [head for head in rule.heads if head.signature in ORDERING]
+            atoms += [atom for one in rule.body for atom in one.atoms if atom.signature == FITS]
+            if names & {split_arguments(atom.text)[1].strip('"') for atom in atoms}:
                 found |= dict.fromkeys(introduced(each) or [each.stem], each)
     return found
 
 
 def preceded(path: Path) -> dict[str, list[str]]:
     """For each primitive of a rule file, those that it precedes."""
-    found: dict[str, list[str]] = {name: [] for name in introduced(path)}
-    for name, other in _pairs(read_rules(path, folders=(path.parent,)).statements, "precedes"):
-        found.setdefault(name, []).append(other)
-    return found
-
-
-def _read(rule: Statement) -> set[str]:
-    """The primitives that a rule depends on."""
-    atoms = [head for head in rule.heads if head.signature in ORDERING]
-    atoms += [atom for each in rule.body for atom in each.atoms if atom.signature == FITS]
-    return {split_arguments(each.text)[1].strip('"') for each in atoms}
+    pairs = stated(read_rules(path, folders=(path.parent,)).statements, ("precedes", 2))
+    return {name: [other for one, other in pairs if one == name] for name in introduced(path)}
 
 
 _EXAMPLE = re.compile(r"%\*\s*(Example|Counter-example):\s*(.*?)\n(.*?)\*%", re.DOTALL)
@@ -187,43 +153,34 @@ class Example:
     line: int
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """An example with the names that were inferred."""
-
-    example: Example
-    found: tuple[tuple[str, tuple[str, ...]], ...]
-
-    @property
-    def met(self) -> bool:
-        """Whether the names are those expected."""
-        return dict(self.found) | dict(self.example.names) == dict(self.found)
-
-
 def read_examples(text: str, *, file: Path | str = "") -> tuple[Example, ...]:
     """The examples of a rule file.
 
     Raises:
         RuleError: One has no facts, no expectation, or something that is no fact.
     """
-    return tuple(_examples(text, str(file)))
-
-
-def _examples(text: str, file: str) -> Iterator[Example]:
+    examples = []
     for found in _EXAMPLE.finditer(text):
         line = text.count("\n", 0, found.start()) + 1
         story, body = found[2].strip(), found[3]
         rows = [each.strip() for each in body.splitlines()]
         expected = [each[2:].strip() for each in rows if each.startswith("=>")]
-        stated = "\n".join("" if each.startswith("=>") else each for each in rows)
-        facts = tuple(_facts(stated, f"in the example {story!r}: ", file, line + 1))
+        told = "\n".join("" if each.startswith("=>") else each for each in rows)
+        facts = tuple(_facts(told, f"in the example {story!r}: ", str(file), line + 1))
         if not facts or not expected:
             raise RuleError(
                 f"{file}:{line}: the example {story!r} needs facts and a line such as "
                 "=> right_hand: Reach, Lift"
             )
-        names = tuple(_expectation(each, file, line) for each in expected)
-        yield Example(story, found[1] == "Example", facts, names, line)
+        names = []
+        for each in expected:
+            ee, colon, listed = each.partition(":")
+            if not colon:
+                raise RuleError(f"{file}:{line}: expected END_EFFECTOR: Name, Name; found {each!r}")
+            named = tuple(one.strip() for one in listed.split(",") if one.strip())
+            names.append((ee.strip(), named))
+        examples.append(Example(story, found[1] == "Example", facts, tuple(names), line))
+    return tuple(examples)
 
 
 def _facts(stated: str, where: str, file: str, first: int) -> Iterator[Fact]:
@@ -244,42 +201,6 @@ def _facts(stated: str, where: str, file: str, first: int) -> Iterator[Fact]:
         except CaparError as error:
             raise RuleError(f"{place}{error}") from None
         at = found.end()
-
-
-def _expectation(text: str, file: str, line: int) -> tuple[str, tuple[str, ...]]:
-    ee, colon, names = text.partition(":")
-    if not colon:
-        raise RuleError(f"{file}:{line}: expected END_EFFECTOR: Name, Name; found {text!r}")
-    return ee.strip(), tuple(each.strip() for each in names.split(",") if each.strip())
-
-
-def try_examples(examples: Sequence[Example], *, profile: Profile) -> tuple[Outcome, ...]:
-    """The names that the rules infer for each example.
-
-    Raises:
-        RuleError: The rules have an error.
-    """
-    outcomes = []
-    for each in examples:
-        links = infer(each.facts, profile=profile).links
-        found = tuple((link.ee, tuple(one.name for one in link.segments)) for link in links)
-        outcomes.append(Outcome(each, found))
-    return tuple(outcomes)
-
-
-def lacking(examples: Sequence[Example], name: str) -> tuple[str, ...]:
-    """Which examples of a primitive are missing: one that it matches, one that it does not."""
-    shown = {
-        each.positive
-        for each in examples
-        if each.positive == any(name in names for _, names in each.names)
-    }
-    missing = []
-    if True not in shown:
-        missing.append(f"an Example in which {name} occurs")
-    if False not in shown:
-        missing.append(f"a Counter-example in which {name} does not occur")
-    return tuple(missing)
 
 
 def written(example: Example) -> str:
@@ -357,22 +278,28 @@ def try_rule(path: Path, *, base: str = DEFAULT, beside: Sequence[Path] = ()) ->
         RuleError: An example cannot be read, or the rules have an error.
     """
     examples = read_examples(_text(path), file=path)
-    names = introduced(path)
     failures = []
     rules = admitted_profile(base, added=(*(each for each in beside if each != path), path))
-    for outcome in try_examples(examples, profile=rules):
-        if not outcome.met:
-            found = dict(outcome.found)
-            for ee, expected in outcome.example.names:
-                if found.get(ee) != expected:
-                    failures.append(
-                        f"{path}:{outcome.example.line}: {outcome.example.story!r} expects "
-                        f"{ee}: {', '.join(expected)}; found {', '.join(found.get(ee, ()))}"
-                    )
-    return (
-        *failures,
-        *(f"{path}: it lacks {each}" for name in names for each in lacking(examples, name)),
-    )
+    for example in examples:
+        links = infer(example.facts, profile=rules).links
+        found = {link.ee: tuple(one.name for one in link.segments) for link in links}
+        failures += [
+            f"{path}:{example.line}: {example.story!r} expects "
+            f"{ee}: {', '.join(expected)}; found {', '.join(found.get(ee, ()))}"
+            for ee, expected in example.names
+            if found.get(ee) != expected
+        ]
+    for name in introduced(path):
+        shown = {
+            each.positive
+            for each in examples
+            if each.positive == any(name in names for _, names in each.names)
+        }
+        if True not in shown:
+            failures.append(f"{path}: it lacks an Example in which {name} occurs")
+        if False not in shown:
+            failures.append(f"{path}: it lacks a Counter-example in which {name} does not occur")
+    return tuple(failures)
 
 
 def add_rule(
@@ -493,32 +420,17 @@ def _ordering(
     """The facts that put the primitives of a file before others, or make them kinds of those."""
     lines = []
     for name in introduced(path):
-        stated = [f'specialises("{name}", "{other}").' for other in kind_of]
-        stated += [f'precedes("{name}", "{other}").' for other in over if other != ALL]
-        lines += stated
+        own_lines = [f'specialises("{name}", "{other}").' for other in kind_of]
+        own_lines += [f'precedes("{name}", "{other}").' for other in over if other != ALL]
+        lines += own_lines
         if ALL in over:
-            found = beaten(path, name, base=base, beside=beside, stated=stated)
-            lines += [f'precedes("{name}", "{other}").' for other in found]
+            found = errors(check(path, profile=base, beside=beside))
+            if all(each.code == "ambiguous" for each in found):
+                own = [*parse([path]), *parse_text("\n".join(own_lines))]
+                shipped = known(parse(profile(base).files))
+                every = rivals(name, own, shipped, parse(beside) if beside else ())
+                lines += [f'precedes("{name}", "{other}").' for other in every]
     return "".join(f"{each}\n" for each in lines)
-
-
-def beaten(
-    path: Path, name: str, *, base: str, beside: Sequence[Path], stated: Sequence[str] = ()
-) -> tuple[str, ...]:
-    """The primitives that name a segment with one of a file, or may; nothing if it has errors.
-
-    Args:
-        path: The rule file.
-        name: The primitive.
-        base: The profile that it joins.
-        beside: The user's other rule files.
-        stated: What it specialises or precedes beside what the file states, as facts.
-    """
-    found = errors(check(path, profile=base, beside=beside))
-    if any(each.code != "ambiguous" for each in found):
-        return ()
-    own = [*parse([path]), *parse_text("\n".join(stated))]
-    return rivals(name, own, known(parse(profile(base).files)), parse(beside) if beside else ())
 
 
 def _text(path: Path) -> str:

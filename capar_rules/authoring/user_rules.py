@@ -130,7 +130,10 @@ def teach(names: Iterable[tuple[str, FeatureSet]], *, folder: Path) -> tuple[Pat
         RuleError: A name is no name of a primitive.
         FileError: The name is taken already.
     """
-    texts = [(_path(folder, name), taught(name, features)) for name, features in names]
+    texts = []
+    for name, features in names:
+        stem = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
+        texts.append((folder / f"{stem}.lp", taught(name, features)))
     for path, _ in texts:
         if path.exists():
             raise FileError(path, "exists already.", "Choose another name, or remove that rule.")
@@ -156,11 +159,6 @@ def make_folder(folder: Path) -> Path:
     return folder
 
 
-def _path(folder: Path, name: str) -> Path:
-    stem = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
-    return folder / f"{stem}.lp"
-
-
 HELD = (signal.SIGINT, signal.SIGTERM)
 """Signals that ask a process to end, which are delayed during a transaction."""
 
@@ -184,17 +182,3 @@ def unbroken() -> Iterator[None]:
             signal.signal(each, handler)
     for number in dict.fromkeys(asked):
         signal.raise_signal(number)
-
-
-def take_away(path: Path) -> Path:
-    """Rename a rule file so that it is no longer loaded, until its removal is certain.
-
-    Returns:
-        Its new path.
-    """
-    return path.replace(path.with_suffix(".removed"))
-
-
-def put_back(aside: Path, path: Path) -> None:
-    """Undo the renaming."""
-    aside.replace(path)

@@ -404,6 +404,24 @@ def heads_of(statements: Iterable[Statement]) -> frozenset[Signature]:
     return frozenset(head.signature for each in statements for head in each.heads)
 
 
+def stated(statements: Iterable[Statement], predicate: Signature) -> list[tuple[str, ...]]:
+    """The arguments of each head of a predicate, in order, without quotation marks."""
+    return [
+        tuple(each.strip('"') for each in split_arguments(head.text))
+        for rule in statements
+        for head in rule.heads
+        if head.signature == predicate
+    ]
+
+
+def reached(start: str, pairs: Iterable[tuple[str, ...]]) -> set[str]:
+    """What pairs lead to from a start, in one step or several."""
+    every, found = list(pairs), set[str]()
+    while wider := {other for one, other in every if one in {start, *found}} - found:
+        found |= wider
+    return found
+
+
 def signatures_below(statements: Iterable[Statement]) -> frozenset[Signature]:
     """The predicates that rules read."""
     return frozenset(

@@ -1,6 +1,7 @@
 """The conditions by which a segment has its name, each with what was measured and its limit."""
 
-from collections.abc import Iterable, Iterator, Sequence
+import operator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from capar_rules.engine.syntax import split_arguments
@@ -105,6 +106,12 @@ def _nearest(reason: Reason) -> list[Reason]:
 DEEPEST = 3
 """So many rules below a condition its inequalities are looked for."""
 
+COMPARED: Mapping[str, Callable[[float, float], bool]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
 WORDS = {">=": "at least", "<=": "at most", ">": "more than", "<": "less than"}
 OPPOSITE = {">=": "<", "<": ">=", "<=": ">", ">": "<="}
 
@@ -149,13 +156,7 @@ class Measured:
         """Whether the value is on its side of the limit."""
         if self.value is None or self.limit is None:
             return True
-        compared = {
-            ">=": self.value >= self.limit,
-            "<=": self.value <= self.limit,
-            ">": self.value > self.limit,
-            "<": self.value < self.limit,
-        }
-        return compared[self.relation]
+        return COMPARED[self.relation](self.value, self.limit)
 
     @property
     def nearness(self) -> float:

@@ -14,7 +14,7 @@ from capar.model.observation import Segment
 from capar.model.par import UNKNOWN
 from capar_rules.borders.border_numbers import number_borders
 from capar_rules.engine.profiles import Profile
-from capar_rules.engine.syntax import FITS, Statement, parse_text, split_arguments
+from capar_rules.engine.syntax import FITS, Statement, parse_text, split_arguments, stated
 from capar_rules.explain.conditions import Condition, Conditions, clauses, doubts, leading
 from capar_rules.explain.conditions import Reason as Reason
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
@@ -23,7 +23,6 @@ from capar_rules.explain.nearest import (
     MOST_ASKED,
     NearRule,
     conditions_of,
-    generals_of,
     nearest_rules,
     neighbours,
     overruling,
@@ -159,8 +158,6 @@ class Explainer:
         numbered = number_borders(self.facts, crossings_only=self.profile.crossings_only)
         self.base = rule_base(self.profile)
         self.windows = Windows(self.facts, numbered)
-        self.worlds: dict[Segment, str] = {}
-        """The program of counterfactual worlds of each segment that was asked about."""
 
     def explain(self, segment: Segment) -> Explanation:
         """Why a segment has its name, or why it has none.
@@ -260,7 +257,10 @@ class Explainer:
         conditions = tuple(map(about.of, nodes))
         derived, own = answer.derived, about.scene.own
         fitting = {name for term, name in derived.holding("fits") if term == own}
-        general = [one for one in generals_of(self.base, segment.name) if one in fitting]
+        pairs = stated(self.base.statements, ("specialises", 2))
+        general = sorted(
+            {above for one, above in pairs if one == segment.name and above in fitting}
+        )
         others = neighbours(self.base, segment.name)
         if not segment.known:
             others = [name for term, name in derived.holding("nearest") if term == own]

@@ -16,9 +16,11 @@ from capar_rules.engine.syntax import (
     nodes,
     nodes_read,
     parse_text,
+    reached,
     split_arguments,
+    stated,
 )
-from capar_rules.explain.conditions import Condition, Conditions
+from capar_rules.explain.conditions import COMPARED, Condition, Conditions
 from capar_rules.explain.sentences import RuleBase, Sentences, pairs_of, parsed
 
 MOST_FORMS = 24
@@ -78,13 +80,12 @@ class NearRule:
     @property
     def needed(self) -> list[str]:
         """The conditions with the values that fail."""
-        told = []
+        found = []
         for each in self.failing:
-            values = [
-                f"{one.value_text}, not {one.limit_text}" for one in each.measures if one.limit
-            ]
-            told.append(each.sentence + f" ({'; '.join(values)})" * bool(values))
-        return list(dict.fromkeys(told))
+            values = [f"{one.value_text}, not {one.limit_text}"
+                      for one in each.measures if one.limit]  # fmt: skip
+            found.append(each.sentence + f" ({'; '.join(values)})" * bool(values))
+        return list(dict.fromkeys(found))
 
     @property
     def vague(self) -> bool:
@@ -99,13 +100,12 @@ class NearRule:
     @property
     def nearness(self) -> float:
         """How near the furthest condition comes to holding: a share."""
-        return min(map(_share, self.failing), default=1.0)
-
-
-def _share(condition: Condition) -> float:
-    shares = [one.nearness for one in condition.measures if one.limit]
-    kind = re.split(r"\W", condition.atom)[0]
-    return min(shares, default=SHARES.get(kind, LEAST_SHARE))
+        shares = []
+        for each in self.failing:
+            known = SHARES.get(re.split(r"\W", each.atom)[0], LEAST_SHARE)
+            measured = [one.nearness for one in each.measures if one.limit]
+            shares.append(min(measured, default=known))
+        return min(shares, default=1.0)
 
 
 @dataclass(frozen=True)
@@ -193,7 +193,8 @@ def _bits(
         return
     form = "pairs" if side in ("start", "end") else "things"
     pairs = pairs_of(segment, scene.objects.get(segment, ()), wanted, form)
-    ticks = {"start": segment[4:-1].split(",")[1], "end": str(scene.ends.get(_key(segment), 0))}
+    first = segment[4:-1].split(",")[1]
+    ticks = {"start": first, "end": str(scene.ends.get((hand, int(first)), 0))}
     for have, want, bodies in zip(own, wanted, pairs, strict=True):
         if have == want:
             continue
@@ -210,123 +211,69 @@ def _bits(
             yield conditions.needed(f"{'not ' * (want == '0')}struck({segment},{bodies[0]})")
 
 
-def _key(segment: str) -> tuple[str, int]:
-    hand, tick = segment[4:-1].split(",")
-    return hand, int(tick)
-
-
 # Names next to each other
-
-
-@dataclass(frozen=True)
-class _Names:
-    """What a rule base says of its primitives."""
-
-    above: Mapping[str, frozenset[str]]
-    """What a primitive specialises directly."""
-
-    generals: Mapping[str, frozenset[str]]
-    """All that a primitive specialises, directly or by others."""
-
-    rows: Mapping[str, Sequence[tuple[str, ...]]]
-    asked: Mapping[str, frozenset[tuple[Signature, int]]]
-    """The conditions in the rules of each, with their signs."""
-
-    def below(self, name: str) -> set[str]:
-        """The primitives that specialise one."""
-        return {each for each in self.asked if name in self.generals.get(each, ())}
-
-    def next_to(self, name: str) -> set[str]:
-        """The primitives next to one.
-
-        What specialises it or the same as it, what excludes it, and what has a row of the feature
-        table that differs in one string.
-        """
-        own, below = self.generals.get(name, frozenset()), self.below(name)
-        excluded = {(signature, 1 - sign) for signature, sign in self.asked.get(name, ())}
-        ours = self.rows.get(name, ())
-        rows = {other for other, rows in self.rows.items() if _differ_by_one(ours, rows)}
-        found = below | rows | {one for one in self.asked if own & self.generals.get(one, set())}
-        found |= {each for each, asked in self.asked.items() if asked & excluded}
-        for other in rows:
-            found |= self.below(other) if self.below(other) & below else set()
-        return found - {name, *own}
-
-
-@lru_cache(maxsize=8)
-def _names(base: RuleBase) -> _Names:
-    above: dict[str, set[str]] = defaultdict(set)
-    for one, general in names_in_pairs(base.statements, "specialises"):
-        above[one].add(general)
-    rows: dict[str, list[tuple[str, ...]]] = defaultdict(list)
-    names: list[str] = []
-    for rule in base.statements:
-        for head in rule.heads if not rule.body else ():
-            parts = split_arguments(head.text)
-            if head.signature == ("feature_row", 6):
-                rows[parts[0].strip('"')].append(tuple(parts[2:]))
-            if head.signature == ("primitive", 1):
-                names.append(parts[0].strip('"'))
-    asked = {
-        name: frozenset(
-            (each.atoms[0].signature, each.sign)
-            for rule in rules_of(base.statements, name)
-            for each in rule.body
-            if each.kind == "atom" and each.atoms[0].signature not in (FITS, FEATURE)
-        )
-        for name in names
-    }
-    generals = {one: frozenset(_closed(above, one)) for one in above}
-    return _Names({one: frozenset(every) for one, every in above.items()}, generals, rows, asked)
-
-
-def _closed(above: Mapping[str, Iterable[str]], name: str) -> set[str]:
-    found, waiting = set[str](), [name]
-    while waiting:
-        more = {*above.get(waiting.pop(), ())} - found
-        found |= more
-        waiting += sorted(more)
-    return found
-
-
-def _differ_by_one(ours: Sequence[tuple[str, ...]], theirs: Sequence[tuple[str, ...]]) -> bool:
-    return any(
-        list(map(len, one)) == list(map(len, other))
-        and sum(a == b for a, b in zip(one, other, strict=True)) == SAME_STRINGS
-        for one in ours
-        for other in theirs
-    )
-
-
-def names_in_pairs(statements: Iterable[Statement], predicate: str) -> list[tuple[str, str]]:
-    """The names in the facts of a predicate such as ``specialises``."""
-    found = []
-    for rule in statements:
-        for head in rule.heads if not rule.body else ():
-            if head.signature == (predicate, 2):
-                one, other = (each.strip('"') for each in split_arguments(head.text))
-                found.append((one, other))
-    return found
 
 
 def overruling(statements: Sequence[Statement], name: str) -> list[str]:
     """The primitives that specialise one, directly or by others, or that precede it."""
-    pairs = names_in_pairs(statements, "specialises")
-    found = {name}
-    while wider := {one for one, general in pairs if general in found} - found:
-        found |= wider
-    before = {one for one, other in names_in_pairs(statements, "precedes") if other == name}
-    return sorted(found - {name} | before)
+    below = [(general, one) for one, general in stated(statements, ("specialises", 2))]
+    before = {one for one, other in stated(statements, ("precedes", 2)) if other == name}
+    return sorted(reached(name, below) - {name} | before)
 
 
-def generals_of(base: RuleBase, name: str) -> list[str]:
-    """What a primitive specialises directly."""
-    return sorted(_names(base).above.get(name, ()))
-
-
+@lru_cache(maxsize=256)
 def neighbours(base: RuleBase, name: str) -> list[str]:
-    """The names next to one."""
-    return sorted(_names(base).next_to(name))
+    """The names next to one.
+
+    What specialises it or the same as it, what excludes it, and what has a row of the feature
+    table that differs in one string.
+    """
+    above, rows, asked = _names(base)
+    own = above.get(name, set())
+    below = {one for one, general in above.items() if name in general}
+    excluded = {(signature, 1 - sign) for signature, sign in asked.get(name, ())}
+    alike = {
+        other
+        for other, theirs in rows.items()
+        if any(
+            list(map(len, one)) == list(map(len, row))
+            and sum(map(str.__eq__, one, row)) == SAME_STRINGS
+            for one in rows.get(name, ())
+            for row in theirs
+        )
+    }
+    found = below | alike | {one for one, general in above.items() if own & general}
+    found |= {one for one, conditions in asked.items() if conditions & excluded}
+    for other in alike:
+        under = {one for one, general in above.items() if other in general}
+        found |= under if under & below else set()
+    return sorted(found - {name, *own})
+
+
+@lru_cache(maxsize=8)
+def _names(
+    base: RuleBase,
+) -> tuple[
+    dict[str, set[str]], dict[str, list[tuple[str, ...]]], dict[str, set[tuple[Signature, int]]]
+]:
+    """What each primitive specialises, its rows of features, and the conditions it asks for."""
+    pairs = stated(base.statements, ("specialises", 2))
+    names = [name for (name,) in stated(base.statements, ("primitive", 1))]
+    rows: dict[str, list[tuple[str, ...]]] = defaultdict(list)
+    for name, _, *bits in stated(
+        (one for one in base.statements if not one.body), ("feature_row", 6)
+    ):
+        rows[name].append(tuple(bits))
+    asked = {
+        name: {
+            (each.atoms[0].signature, each.sign)
+            for rule in rules_of(base.statements, name)
+            for each in rule.body
+            if each.kind == "atom" and each.atoms[0].signature not in (FITS, FEATURE)
+        }
+        for name in names
+    }
+    return {name: reached(name, pairs) for name in names}, rows, asked
 
 
 @lru_cache(maxsize=256)
@@ -464,7 +411,11 @@ class _Atoms:
         if any(not _plain(each) for each in form.body):
             return None
         failable = {id(each) for each in form.body if _may_fail(each, sentences)}
-        hopeless = [each for each in form.body if self._hopeless(each)]
+        hopeless = [
+            each
+            for each in form.body
+            if _binds(each) and not self.rows.get(each.atoms[0].signature)
+        ]
         if len(hopeless) > most or any(id(each) not in failable for each in hopeless):
             return None
         joins = [each.partition("=")[::2] for each in form.joins]
@@ -474,10 +425,6 @@ class _Atoms:
             if found is not None:
                 return found
         return None
-
-    def _hopeless(self, literal: Literal) -> bool:
-        """Whether no atom of a condition's predicate holds, so that it fails in every match."""
-        return _binds(literal) and not self.rows.get(literal.atoms[0].signature)
 
     def matching(self, literal: Literal, bound: Bound) -> str:
         """An atom that a condition, taken without its negation, is met by; empty if none is."""
@@ -635,9 +582,5 @@ def _compares(text: str, bound: Bound) -> bool:
         return False
     if sign in ("=", "!="):
         return (one == other) == (sign == "=")
-    if not (one.lstrip("-").isdigit() and other.lstrip("-").isdigit()):
-        return False
-    first, second = int(one), int(other)
-    return {"<": first < second, "<=": first <= second, ">": first > second}.get(
-        sign, first >= second
-    )
+    numbers = one.lstrip("-").isdigit() and other.lstrip("-").isdigit()
+    return numbers and COMPARED[sign](int(one), int(other))

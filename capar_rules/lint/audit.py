@@ -83,7 +83,7 @@ class Audit:
         return not (self.ambiguous or self.shadowed or self.unreachable or unreasoned)
 
 
-def summarise(atoms: frozenset[Atom], *, undecided: Container[str] = ()) -> Audit:
+def summarise(atoms: frozenset[Atom], *, undecided: Container[object] = ()) -> Audit:
     """The audit of what holds in some world.
 
     Args:
@@ -163,11 +163,6 @@ def words_of(rules: Sequence[Statement]) -> list[Statement]:
 def chosen_in_audit() -> frozenset[Signature]:
     """The relations that the worlds choose freely, some only over a few of their arguments."""
     return heads_of(each for each in _own("words.lp") if each.head_kind == "choice")
-
-
-def physics() -> tuple[Statement, ...]:
-    """The rules that exclude impossible segments."""
-    return _own("physical.lp")
 
 
 def premises() -> tuple[Statement, ...]:

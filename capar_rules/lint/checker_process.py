@@ -11,18 +11,17 @@ import os
 import resource
 import sys
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cache
 from math import ceil
 from pathlib import Path
-from typing import Any
 
 from capar.model.errors import CaparError
 from capar_rules.engine.profiles import profile as shipped
-from capar_rules.engine.syntax import Place, Statement, parse
-from capar_rules.lint.findings import Finding, errors, safety_findings, unsafe_findings
+from capar_rules.engine.syntax import Place, parse
+from capar_rules.lint.findings import Finding, errors, unsafe_findings
 from capar_rules.lint.text_checks import (
     Known,
     Reading,
@@ -55,16 +54,6 @@ class Request:
     by_text_alone: bool = True
     """Whether to leave out the checks that ask the solver, which take seconds."""
 
-    def as_json(self) -> dict[str, Any]:
-        """The request as plain values."""
-        return asdict(self)
-
-    @classmethod
-    def from_json(cls, content: dict[str, Any]) -> "Request":
-        """The request of plain values."""
-        lists = {key: tuple(content[key]) for key in ("files", "beside")}
-        return cls(**{**content, **lists})
-
 
 @cache
 def base_of(profile: str) -> Known:
@@ -89,13 +78,18 @@ def findings_of(request: Request) -> Iterator[Message]:
     for reading in readings:
         if Path(reading.file).resolve() not in beside:
             yield Path(reading.file)
-            others = [other for other in readings if other is not reading]
-            found = tuple(text_findings(reading, with_files(base, others)))
+            added = [rule for each in readings if each is not reading for rule in each.statements]
+            found = tuple(text_findings(reading, known([*base.rules, *added]) if added else base))
             sound = sound and not errors(found)
             yield from found
     if sound and not request.by_text_alone:
-        yield Path(readings[0].file)
-        yield from _solver_findings(readings[0], base, readings[1:])
+        first, *others = readings
+        yield Path(first.file)
+        found = tuple(unsafe_findings(first.text, first.file, ground=True))
+        yield from found
+        if not errors(found):
+            rules = [rule for each in others for rule in each.statements]
+            yield from world_findings(first.statements, base, rules)
 
 
 def read_all(paths: Iterable[Path]) -> Iterator[Reading | Path]:
@@ -110,12 +104,6 @@ def read_all(paths: Iterable[Path]) -> Iterator[Reading | Path]:
             reading = read_rules(path, folders=folders)
             waiting += reading.included
             yield reading
-
-
-def with_files(base: Known, readings: Sequence[Reading]) -> Known:
-    """The vocabulary of a rule base together with that of other files."""
-    added: list[Statement] = [rule for reading in readings for rule in reading.statements]
-    return known([*base.rules, *added]) if added else base
 
 
 def text_findings(reading: Reading, base: Known) -> Iterator[Finding]:
@@ -135,15 +123,6 @@ def text_findings(reading: Reading, base: Known) -> Iterator[Finding]:
             return
 
 
-def _solver_findings(reading: Reading, base: Known, others: Sequence[Reading]) -> Iterator[Finding]:
-    """What only the solver can say of a file whose text has no error."""
-    found = tuple(safety_findings(reading.text, reading.file))
-    yield from found
-    if not errors(found):
-        beside = [rule for each in others for rule in each.statements]
-        yield from world_findings(reading.statements, base, beside)
-
-
 CPU_S = 30
 """Limit of processor time of one request [s]: a sound file needs 2 to 4 s, at most 10 s."""
 
@@ -159,10 +138,14 @@ def serve(lines: Iterable[str]) -> None:
     for line in lines:
         asked = json.loads(line)
         os.chdir(asked["folder"])
-        request = Request.from_json(asked["request"])
+        request = Request(**asked["request"])
         base_of(request.profile)
-        _limit_memory()
-        _limit_time()
+        status = Path("/proc/self/statm")
+        pages = int(status.read_text().split()[0]) if status.exists() else 1 << 18
+        _limit(resource.RLIMIT_AS, pages * resource.getpagesize() + MEMORY_BYTES)
+        _limit(resource.RLIMIT_FSIZE, 0)
+        _limit(resource.RLIMIT_CORE, 0)
+        _limit(resource.RLIMIT_CPU, ceil(time.process_time()) + CPU_S)
         try:
             answer(request)
         except (MemoryError, RecursionError):
@@ -186,28 +169,12 @@ def _write(message: Message | None) -> None:
     sys.stdout.flush()
 
 
-def _limit_memory() -> None:
-    _limit(resource.RLIMIT_AS, _virtual_bytes() + MEMORY_BYTES)
-    _limit(resource.RLIMIT_FSIZE, 0)
-    _limit(resource.RLIMIT_CORE, 0)
-
-
-def _limit_time() -> None:
-    _limit(resource.RLIMIT_CPU, ceil(time.process_time()) + CPU_S)
-
-
 def _limit(kind: int, value: int) -> None:
     """Set the soft limit, which can be moved for the next request."""
     _, hard = resource.getrlimit(kind)
     # Not every system knows every limit, and an administrator's may be lower already.
     with suppress(ValueError, OSError):
         resource.setrlimit(kind, (value, hard))
-
-
-def _virtual_bytes() -> int:
-    status = Path("/proc/self/statm")
-    pages = int(status.read_text().split()[0]) if status.exists() else 1 << 18
-    return pages * resource.getpagesize()
 
 
 if __name__ == "__main__":

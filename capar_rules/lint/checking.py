@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -37,42 +37,6 @@ END = "null"
 _LOCK = Lock()
 
 
-@dataclass(frozen=True)
-class _Checker:
-    """A checker process that waits for requests, and where it writes its remarks."""
-
-    process: "subprocess.Popen[str]"
-    remarks: IO[str]
-
-    def answer(self, request: str) -> tuple[list[str], int | None]:
-        """The lines of an answer, and the exit code if the process ended instead of answering."""
-        assert self.process.stdin is not None
-        assert self.process.stdout is not None
-        late = Timer(WALL_S, self.process.kill)
-        late.start()
-        lines: list[str] = []
-        try:
-            self.process.stdin.write(request + "\n")
-            self.process.stdin.flush()
-            while (line := self.process.stdout.readline()).endswith("\n"):
-                if line.strip() == END:
-                    return lines, None
-                lines.append(line)
-        except BrokenPipeError:
-            pass  # it ended before it had read the request
-        except BaseException:
-            self.end()  # what it still writes would be taken for the next answer
-            raise
-        finally:
-            late.cancel()
-        return lines, self.process.wait()
-
-    def end(self) -> None:
-        """End the process, whatever it does."""
-        self.process.kill()
-        self.process.communicate()
-
-
 def ask(request: str) -> tuple[list[str], int | None, str]:
     """What the checker process writes on a request.
 
@@ -81,24 +45,54 @@ def ask(request: str) -> tuple[list[str], int | None, str]:
 
     Returns:
         The lines of the answer; the process's exit code (negative: the signal that ended it) if it
-        ended before the answer was complete, else None; and what it remarked.
+        ended before the answer was complete, else None; and what it wrote to standard error.
     """
     with _LOCK:
-        checker = _running(_START, os.getpid())
-        if checker.process.poll() is not None:
+        process, remarks = _running(_START, os.getpid())
+        if process.poll() is not None:
             _running.cache_clear()
-            checker = _running(_START, os.getpid())
-        lines, ended = checker.answer(request)
-        if ended is None:
+            process, remarks = _running(_START, os.getpid())
+        lines, complete = _answer(process, request)
+        if complete:
             return lines, None, ""
+        ended = process.wait()
         _running.cache_clear()
-        checker.remarks.seek(0)
-        return lines, ended, checker.remarks.read()
+        remarks.seek(0)
+        return lines, ended, remarks.read()
+
+
+def _answer(process: "subprocess.Popen[str]", request: str) -> tuple[list[str], bool]:
+    """The lines of an answer, and whether it is complete."""
+    assert process.stdin is not None
+    assert process.stdout is not None
+    late = Timer(WALL_S, process.kill)
+    late.start()
+    lines: list[str] = []
+    try:
+        process.stdin.write(request + "\n")
+        process.stdin.flush()
+        while (line := process.stdout.readline()).endswith("\n"):
+            if line.strip() == END:
+                return lines, True
+            lines.append(line)
+    except BrokenPipeError:
+        pass  # it ended before it had read the request
+    except BaseException:
+        _end(process)  # what it still writes would be taken for the next answer
+        raise
+    finally:
+        late.cancel()
+    return lines, False
+
+
+def _end(process: "subprocess.Popen[str]") -> None:
+    process.kill()
+    process.communicate()
 
 
 @cache
-def _running(start: str, _owner: int) -> _Checker:
-    """A process of this one; a copy of this process that was forked starts its own."""
+def _running(start: str, _owner: int) -> tuple["subprocess.Popen[str]", IO[str]]:
+    """A checker of this process and its standard error; a fork starts its own."""
     remarks = TemporaryFile("w+")  # noqa: SIM115 - it lasts as long as the process
     process = subprocess.Popen(
         [sys.executable, "-I", "-c", start, str(rule_file("").parent)],
@@ -107,9 +101,8 @@ def _running(start: str, _owner: int) -> _Checker:
         stderr=remarks,
         text=True,
     )
-    checker = _Checker(process, remarks)
-    atexit.register(checker.end)
-    return checker
+    atexit.register(_end, process)
+    return process, remarks
 
 
 Findings = tuple[Finding, ...]
@@ -123,25 +116,11 @@ def check(path: Path, *, profile: str = DEFAULT, beside: Sequence[Path] = ()) ->
         path: The file.
         profile: The rule base that it would join.
         beside: Other rule files of the user that it would stand beside.
-    """
-    return check_all([path], profile=profile, beside=beside)[0]
-
-
-def check_all(
-    paths: Sequence[Path], *, profile: str = DEFAULT, beside: Sequence[Path] = ()
-) -> list[Findings]:
-    """The same for many files, each by itself, in order."""
-    others = tuple(map(str, beside))
-    return answers([Request((str(path),), profile, others, by_text_alone=False) for path in paths])
-
-
-def answers(requests: Sequence[Request]) -> list[Findings]:
-    """The findings for each request, in order.
 
     Raises:
         RuleError: The checker process failed for a reason other than its limits.
     """
-    return [_answer(request) for request in requests]
+    return answer(Request((str(path),), profile, tuple(map(str, beside)), by_text_alone=False))
 
 
 def require(path: Path, findings: Sequence[Finding]) -> None:
@@ -156,11 +135,11 @@ def require(path: Path, findings: Sequence[Finding]) -> None:
         raise RuleError(f"{path} does not count:\n{lines}")
 
 
-def _answer(request: Request) -> Findings:
+def answer(request: Request) -> Findings:
     """The findings for one request; the last one says why, if the process was ended."""
     findings: set[Finding] = set()
     file = request.files[0]
-    asked = {"folder": str(Path.cwd()), "request": request.as_json()}
+    asked = {"folder": str(Path.cwd()), "request": asdict(request)}
     messages, ended, remarks = ask(json.dumps(asked))
     for message in map(json.loads, messages):
         if isinstance(message, str):
@@ -225,16 +204,7 @@ def admit(files: Sequence[Path], *, profile: str) -> None:
     Raises:
         RuleError: There is an error; it gives each with file, line, column and remedy.
     """
-    refuse(faults(files, profile=profile))
-
-
-def refuse(wrong: Sequence[Finding]) -> None:
-    """Say why rule files are not loaded.
-
-    Raises:
-        RuleError: There is an error among them; it gives each with file, line, column and remedy.
-    """
-    if wrong:
+    if wrong := faults(files, profile=profile):
         lines = "\n".join(map(str, wrong))
         raise RuleError(
             f"rules that cannot count, so nothing was done:\n{lines}\n"
@@ -244,15 +214,5 @@ def refuse(wrong: Sequence[Finding]) -> None:
 
 def faults(files: Sequence[Path], *, profile: str) -> tuple[Finding, ...]:
     """The errors that keep rule files from being loaded together, by place."""
-    return faults_of_each([files], profile=profile)[0] if files else ()
-
-
-def faults_of_each(sets: Sequence[Sequence[Path]], *, profile: str) -> list[tuple[Finding, ...]]:
-    """The same for several sets of files, each set by itself, in order."""
-    from capar_rules.lint.checker_process import Request
-
-    requests = [Request(tuple(map(str, files)), profile) for files in sets]
-    return [
-        tuple(finding for finding in errors(found) if finding.code not in HARMLESS)
-        for found in answers(requests)
-    ]
+    found = answer(Request(tuple(map(str, files)), profile)) if files else ()
+    return tuple(each for each in errors(found) if each.code not in HARMLESS)

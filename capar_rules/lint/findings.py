@@ -48,18 +48,13 @@ _MESSAGE = re.compile(r"[^:\n]*:(\d+):(\d+)(?:-[\d:]+)?: (?:error|info): (.*)")
 _UNSAFE = re.compile(r": note: '(\w+)' is unsafe")
 
 
-def safety_findings(text: str, file: str) -> Iterator[Finding]:
-    """What the solver reports when it grounds a file by itself."""
+def unsafe_findings(text: str, file: str, *, ground: bool = False) -> Iterator[Finding]:
+    """What the solver reports when it reads a file, or grounds it by itself."""
     try:
-        brave(text, ())
-    except RuleError as error:
-        yield from solver_findings(str(error), file)
-
-
-def unsafe_findings(text: str, file: str) -> Iterator[Finding]:
-    """What the solver reports when it only reads a file: unsafe variables above all."""
-    try:
-        understand(text)
+        if ground:
+            brave(text, ())
+        else:
+            understand(text)
     except RuleError as error:
         yield from solver_findings(str(error), file)
 

@@ -1,11 +1,11 @@
 """Checks of a rule file by its text: how it is read, which statements it has, and cycles."""
 
 import re
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from difflib import get_close_matches
 from pathlib import Path
+from typing import Any
 
 from capar.model.errors import RuleError
 from capar.model.facts import LARGEST
@@ -22,6 +22,7 @@ from capar_rules.engine.syntax import (
     nodes_read,
     parse_text,
     split_arguments,
+    stated,
 )
 from capar_rules.lint.findings import NOTE, Finding, solver_findings
 
@@ -39,6 +40,7 @@ AUTHORED: dict[Signature, str] = {
 }
 """Predicates of the rule base that a user's file may define, each with an example."""
 
+PRIMITIVE = ("primitive", 1)
 HARMLESS = {"rule", "comment", "defined", "definition"}
 REFUSED = {
     "script": "scripts run code; rules are logic alone",
@@ -94,7 +96,7 @@ def known(rules: Sequence[Statement]) -> Known:
             for rule in rules
             if isinstance(rule.defines, tuple) and rule.place.file.endswith("inputs.lp")
         ),
-        dict(_named(rules, "primitive")),
+        {name: each.place.file for each in rules for (name,) in stated([each], PRIMITIVE)},
         frozenset(rule.defines for rule in rules if isinstance(rule.defines, str)),
     )
 
@@ -102,10 +104,13 @@ def known(rules: Sequence[Statement]) -> Known:
 def static_findings(own: Sequence[Statement], base: Known, *, file: str) -> Iterator[Finding]:
     """Every finding that needs no solver."""
     yield from _statements(own, base)
-    yield from _heads(own, base)
-    yield from _bodies(own, base)
+    yield from _predicates(own, base)
     yield from _primitives(own, base, file)
-    yield from _documentation(own)
+    if own and not (own[0].kind == "comment" and re.match(r"%\*\s*\w+:\s+\S", own[0].text)):
+        yield Finding(
+            own[0].place, "no-definition", "the file does not open with its definition in words.",
+            "Begin it with a line such as %* Lift: a possessed object goes up. *%", NOTE,
+        )  # fmt: skip
 
 
 def _statements(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
@@ -138,47 +143,39 @@ def _statements(own: Iterable[Statement], base: Known) -> Iterator[Finding]:
                 )  # fmt: skip
 
 
-def _heads(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
-    taken = (base.heads | base.inputs) - _beside(own, base)
+def _predicates(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
+    """Predicates that a file may not define, or that nothing defines."""
+    names = introduced_names(own)
+    copies = {file for name, file in base.primitives.items() if name in names and not _ships(file)}
+    taken = (base.heads | base.inputs) - heads_of(
+        each for each in base.rules if each.place.file in copies
+    )
     arities = dict(AUTHORED.keys())
+    words = base.heads | base.inputs | heads_of(own) | set(AUTHORED)
+    words -= {("because", 3), ("because_part", 3)}
     for statement in own:
         for head in statement.heads:
-            if head.signature in AUTHORED:
-                continue
             name, arity = head.signature
-            if head.signature in taken:
+            if head.signature in taken and head.signature not in AUTHORED:
+                listed = ", ".join(f"{word}/{count}" for word, count in AUTHORED)
                 yield Finding(
                     head.place, "redefined-predicate",
                     f"{name}/{arity} is the rule base's own; a file may not add to it.",
-                    f"Give yours another name, or state one of {_listed(AUTHORED)}.",
+                    f"Give yours another name, or state one of {listed}.",
                 )  # fmt: skip
-            elif name in arities:
+            elif arities.get(name, arity) != arity:
                 yield Finding(
                     head.place, "wrong-arity",
                     f"{name} has {arities[name]} arguments, not {arity}.",
                     f"Write it like {AUTHORED[name, arities[name]]}.",
                 )  # fmt: skip
-
-
-def _beside(own: Iterable[Statement], base: Known) -> frozenset[Signature]:
-    """What files of the user define that introduce a primitive of this one, as its copy does."""
-    names = introduced_names(own)
-    files = {file for name, file in base.primitives.items() if name in names and not _ships(file)}
-    return heads_of(each for each in base.rules if each.place.file in files)
+        for literal in statement.body:
+            yield from (_unknown(each, words) for each in literal.atoms
+                        if each.signature not in words)  # fmt: skip
 
 
 def _ships(file: str) -> bool:
     return Path(file).is_relative_to(rule_file("inputs.lp").parent)
-
-
-def _bodies(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
-    words = base.heads | base.inputs | heads_of(own) | set(AUTHORED)
-    words -= {("because", 3), ("because_part", 3)}
-    for statement in own:
-        for literal in statement.body:
-            for atom in literal.atoms:
-                if atom.signature not in words:
-                    yield _unknown(atom, words)
 
 
 def _unknown(atom: Atom, words: Iterable[Signature]) -> Finding:
@@ -201,7 +198,7 @@ def _unknown(atom: Atom, words: Iterable[Signature]) -> Finding:
 
 def introduced_names(own: Iterable[Statement]) -> set[str]:
     """The primitives that rules introduce."""
-    return {name for name, _ in _named(own, "primitive")}
+    return {name for (name,) in stated(own, PRIMITIVE)}
 
 
 def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Finding]:
@@ -235,16 +232,30 @@ def _primitives(own: Sequence[Statement], base: Known, file: str) -> Iterator[Fi
                     f'state primitive("Name") first.',
                 )  # fmt: skip
             if name in _ORDERING:
-                yield from _ordered(head, arguments, mine | set(base.primitives))
-                circle = _circle(head, [*base.rules, *own])
-                if circle:
+                there = mine | set(base.primitives)
+                for argument in {each.strip('"') for each in arguments} - there:
+                    close = get_close_matches(argument, sorted(there), n=1)
+                    yield Finding(
+                        head.place, "unknown-primitive", f'there is no primitive "{argument}".',
+                        f"Did you mean {close[0]}?" if close
+                        else f"There are {', '.join(sorted(there))}.",
+                    )  # fmt: skip
+                if circle := _circle(head, [*base.rules, *own]):
                     yield Finding(
                         head.place, "circular", f"{head.text} closes a circle ({circle}): a "
                         "segment that fits them all would get no name.",
                         "State one order: take this line out, or another one of the circle.",
                     )  # fmt: skip
             if name == "feature_row":
-                yield from _row(head, arguments)
+                strings = [each.strip('"') for each in arguments[2:]]
+                count = len(strings[2])
+                right = (max(2 * count - 1, 0), max(2 * count - 1, 0), count, count)
+                if tuple(map(len, strings)) != right or set("".join(strings)) - {"0", "1"}:
+                    yield Finding(
+                        head.place, "wrong-bits", f"{head.text} is no feature set.",
+                        f"Over {count} objects the strings have {', '.join(map(str, right))} bits, "
+                        "0 or 1.",
+                    )  # fmt: skip
     if not mine:
         yield Finding(
             Place(file, 1, 1), "no-primitive", "the file introduces no primitive.",
@@ -274,47 +285,6 @@ def _circle(stated: Atom, rules: Iterable[Statement]) -> str:
                 ways[other] = [*ways[name], told]
                 waiting.append(other)
     return ", ".join(ways.get(first, ())).replace('"', "")
-
-
-def _ordered(head: Atom, arguments: Sequence[str], names: set[str]) -> Iterator[Finding]:
-    for argument in arguments:
-        if argument.strip('"') not in names:
-            close = get_close_matches(argument.strip('"'), sorted(names), n=1)
-            yield Finding(
-                head.place, "unknown-primitive", f"there is no primitive {argument}.",
-                f"Did you mean {close[0]}?" if close else f"There are {', '.join(sorted(names))}.",
-            )  # fmt: skip
-
-
-def _row(head: Atom, arguments: Sequence[str]) -> Iterator[Finding]:
-    strings = [each.strip('"') for each in arguments[2:]]
-    count = len(strings[2])
-    right = (max(2 * count - 1, 0), max(2 * count - 1, 0), count, count)
-    if tuple(map(len, strings)) != right or set("".join(strings)) - {"0", "1"}:
-        yield Finding(
-            head.place, "wrong-bits", f"{head.text} is no feature set.",
-            f"Over {count} objects the strings have {', '.join(map(str, right))} bits, 0 or 1.",
-        )  # fmt: skip
-
-
-def _documentation(own: Sequence[Statement]) -> Iterator[Finding]:
-    if own and not (own[0].kind == "comment" and re.match(r"%\*\s*\w+:\s+\S", own[0].text)):
-        yield Finding(
-            own[0].place, "no-definition", "the file does not open with its definition in words.",
-            "Begin it with a line such as %* Lift: a possessed object goes up. *%", NOTE,
-        )  # fmt: skip
-
-
-def _named(rules: Iterable[Statement], predicate: str) -> Iterator[tuple[str, str]]:
-    """The arguments of a unary predicate's facts, each with its file."""
-    for rule in rules:
-        for head in rule.heads:
-            if head.signature == (predicate, 1):
-                yield split_arguments(head.text)[0].strip('"'), rule.place.file
-
-
-def _listed(signatures: Iterable[Signature]) -> str:
-    return ", ".join(f"{name}/{arity}" for name, arity in signatures)
 
 
 DEEPEST = 100
@@ -405,16 +375,12 @@ def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Findin
                 text, found.start(), path, "number", f"{found[0][:20]} is too large for the rules.",
                 f"Stay within {LARGEST}: millimetres, frames and milliseconds do.",
             )  # fmt: skip
-    for found in re.finditer(r"#program\b", bare):
-        yield _at(
-            text, found.start(), path, "refused-statement", "#program is refused: rules stand in "
-            "one program.", "Remove it.",
+    for found in re.finditer(r"#(program|script)\b", bare):
+        code = "script" if found[1] == "script" else "refused-statement"
+        why = "#script runs code and is refused." if found[1] == "script" else (
+            "#program is refused: rules stand in one program."
         )  # fmt: skip
-    for found in re.finditer(r"#script\b", bare):
-        yield _at(
-            text, found.start(), path, "script", "#script runs code and is refused.",
-            "Remove it; rules are logic alone.",
-        )  # fmt: skip
+        yield _at(text, found.start(), path, code, why, "Remove it; rules are logic alone.")
     for found in _includes(text):
         name = found[2] or found[3] or ""
         target = (path.parent / name).resolve()
@@ -438,11 +404,11 @@ def _tokens(text: str, path: Path, folders: tuple[Path, ...]) -> Iterator[Findin
 
 def _includes(text: str) -> list[re.Match[str]]:
     """Every #include outside comments; a % in a quoted text begins no comment."""
-    return list(_INCLUDE.finditer(_STRING_OR_COMMENT.sub(_blank_comment, text)))
 
+    def shown(found: re.Match[str]) -> str:
+        return found[0] if found[0].startswith('"') else _blank(found)
 
-def _blank_comment(found: re.Match[str]) -> str:
-    return found[0] if found[0].startswith('"') else _blank(found)
+    return list(_INCLUDE.finditer(_STRING_OR_COMMENT.sub(shown, text)))
 
 
 def _blank(found: re.Match[str]) -> str:
@@ -454,61 +420,43 @@ def _at(text: str, at: int, path: Path, code: str, message: str, remedy: str) ->
     return Finding(Place(str(path), line, at - text.rfind("\n", 0, at)), code, message, remedy)
 
 
-def _placed(statement: Statement, file: str) -> Statement:
-    """The statement with its file's name in all its places."""
-
-    def here(place: Place) -> Place:
-        return replace(place, file=file)
-
-    return replace(
-        statement,
-        place=here(statement.place),
-        heads=tuple(replace(each, place=here(each.place)) for each in statement.heads),
-        body=tuple(
-            replace(
-                each,
-                place=here(each.place),
-                atoms=tuple(replace(atom, place=here(atom.place)) for atom in each.atoms),
-            )
-            for each in statement.body
-        ),
-        external=tuple(map(here, statement.external)),
-    )
-
-
-Graph = Mapping[Signature, set[Signature]]
+def _placed(value: Any, file: str) -> Any:
+    """A statement with its file's name in all its places."""
+    if isinstance(value, Place):
+        return replace(value, file=file)
+    if isinstance(value, tuple):
+        return tuple(_placed(each, file) for each in value)
+    if not isinstance(value, Statement | Literal | Atom):
+        return value
+    content = {each.name: _placed(getattr(value, each.name), file) for each in fields(value)}
+    return replace(value, **content)
 
 
 def cycle_findings(own: Sequence[Statement], base: Sequence[Statement]) -> Iterator[Finding]:
     """Each rule of a file through which a predicate depends on its own negation."""
-    everything = [*base, *own]
-    graph = _graph(everything)
-    component = _components(graph)
-    negative = {
-        component[head]
-        for head, below, sign in _edges(everything)
-        if sign and component[head] == component.get(below)
-    }
+    edges = list(_edges([*base, *own]))
+    component = components(edges)
+    negative = {component[head] for head, below, sign in edges
+                if sign and component[head] == component[below]}  # fmt: skip
     for rule in own:
         for head, below, _ in _edges([rule]):
-            if component.get(head) == component.get(below) and component.get(head) in negative:
-                path = " -> ".join(name for name, _ in [head, *_path(graph, below, head)])
+            if component.get(head, -1) == component.get(below) and component[head] in negative:
+                circle = sorted({name for (name, _), at in component.items()
+                                 if at == component[head]})  # fmt: skip
                 yield Finding(
                     rule.place, "negative-cycle",
-                    f"{head[0]} depends on its own negation: {path}; there would be several "
-                    "answers, or none.",
+                    f"{head[0]} depends on its own negation, through {', '.join(circle)}; there "
+                    "would be several answers, or none.",
                     "Make it depend on measurements and features, which names do not change.",
                 )  # fmt: skip
                 break
 
 
-def components(rules: Sequence[Statement]) -> dict[Signature, int]:
-    """The number of the strongly connected component of each predicate."""
-    return _components(_graph(rules))
+Edge = tuple[Signature, Signature, bool]
+"""An edge of the dependency graph: head, predicate of the body, whether it is negated."""
 
 
-def _edges(rules: Iterable[Statement]) -> Iterator[tuple[Signature, Signature, bool]]:
-    """Edges of the dependency graph: head, predicate of the body, whether it is negated."""
+def _edges(rules: Iterable[Statement]) -> Iterator[Edge]:
     rules = list(rules)
     named = {node for rule in rules for head in rule.heads for node in nodes(head)}
     for rule in rules:
@@ -521,66 +469,18 @@ def _edges(rules: Iterable[Statement]) -> Iterator[tuple[Signature, Signature, b
                             yield node, below, not closed
 
 
-def _graph(rules: Iterable[Statement]) -> Graph:
-    graph: dict[Signature, set[Signature]] = defaultdict(set)
-    for head, below, _ in _edges(rules):
-        graph[head].add(below)
-        graph[below] |= set()
-    return graph
+def components(edges: Sequence[Edge]) -> dict[Signature, int]:
+    """The number of the strongly connected component of each predicate."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
 
-
-def _components(graph: Graph) -> dict[Signature, int]:
-    """The strongly connected component of each predicate, by Kosaraju's algorithm."""
-    order: list[Signature] = []
-    seen: set[Signature] = set()
-    for start in sorted(graph):
-        order += _walk(graph, start, seen)
-    backward: dict[Signature, set[Signature]] = defaultdict(set)
-    for head, group in graph.items():
-        for below in group:
-            backward[below].add(head)
-    component: dict[Signature, int] = {}
-    done: set[Signature] = set()
-    for number, start in enumerate(reversed(order)):
-        for member in _walk(backward, start, done):
-            component[member] = number
-    return component
-
-
-def _walk(graph: Graph, start: Signature, seen: set[Signature]) -> list[Signature]:
-    """What a depth-first search newly reaches from a start, in postorder."""
-    if start in seen:
-        return []
-    seen.add(start)
-    left: list[Signature] = []
-    stack = [(start, iter(sorted(graph.get(start, ()))))]
-    while stack:
-        node, rest = stack[-1]
-        nearest = next((each for each in rest if each not in seen), None)
-        if nearest is None:
-            left.append(node)
-            stack.pop()
-        else:
-            seen.add(nearest)
-            stack.append((nearest, iter(sorted(graph.get(nearest, ())))))
-    return left
-
-
-def _path(graph: Graph, start: Signature, goal: Signature) -> list[Signature]:
-    """A shortest path between two predicates."""
-    before: dict[Signature, Signature] = {}
-    waiting = [start]
-    for node in waiting:
-        if node == goal:
-            break
-        for successor in sorted(graph[node]):
-            if successor not in before and successor != start:
-                before[successor] = node
-                waiting.append(successor)
-    path = [goal]
-    while path[-1] != start:
-        path.append(before[path[-1]])
-    return path[::-1]
+    every = sorted({node for head, below, _ in edges for node in (head, below)})
+    number = {node: at for at, node in enumerate(every)}
+    pairs = [(number[head], number[below]) for head, below, _ in edges]
+    rows, columns = zip(*pairs, strict=True) if pairs else ((), ())
+    graph = coo_array(([1] * len(pairs), (rows, columns)), shape=(len(every), len(every)))
+    found = connected_components(graph, connection="strong")[1] if every else ()
+    return dict(zip(every, map(int, found), strict=True))
 
 
 WIDEST = 100_000
@@ -594,7 +494,7 @@ _PLAIN = re.compile(r"_*[A-Z]\w*")
 
 def growth_findings(own: Sequence[Statement]) -> Iterator[Finding]:
     """Ranges that are too wide, and recursions that keep making new values."""
-    component = components(own)
+    component = components(list(_edges(own)))
     for rule in own:
         if rule.kind != "rule":
             continue
@@ -617,13 +517,18 @@ def growth_findings(own: Sequence[Statement]) -> Iterator[Finding]:
 def _growing(rule: Statement, component: dict[Signature, int]) -> list[str]:
     """Variables of the head that the recursion changes and nothing outside it binds."""
     mine = {component[node] for head in rule.heads for node in nodes(head) if node in component}
-    again = [each for each in rule.body if _positive(each) and _within(each, component, mine)]
+    positive = [each for each in rule.body if each.kind == "atom" and each.sign == 0]
+    again = [
+        each
+        for each in positive
+        if any(component.get(node) in mine for atom in each.atoms for node in nodes(atom))
+    ]
     if not again:
         return []
     bound = {
         name
-        for each in rule.body
-        if _positive(each) and each not in again
+        for each in positive
+        if each not in again
         for name in _VARIABLE.findall(_TEXT.sub("", each.text))
     }
     passed = {
@@ -639,11 +544,3 @@ def _growing(rule: Statement, component: dict[Signature, int]) -> list[str]:
             names = _VARIABLE.findall(_TEXT.sub("", argument))
             growing += [name for name in names if name not in kept]
     return list(dict.fromkeys(growing))
-
-
-def _positive(literal: Literal) -> bool:
-    return literal.kind == "atom" and literal.sign == 0
-
-
-def _within(literal: Literal, component: dict[Signature, int], mine: set[int]) -> bool:
-    return any(component.get(node) in mine for atom in literal.atoms for node in nodes(atom))

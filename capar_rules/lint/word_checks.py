@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 
 from capar.model.par import ACTION_NAME
-from capar_rules.engine.syntax import FITS, Atom, Literal, Signature, Statement, split_arguments
+from capar_rules.engine.syntax import FITS, Atom, Signature, Statement, split_arguments
 from capar_rules.lint.findings import ERROR, NOTE, Finding
 from capar_rules.lint.text_checks import AUTHORED, Known, introduced_names
 
@@ -63,11 +63,10 @@ def _row(head: Atom, rule: Statement) -> tuple[Signature, list[str], dict[str, l
     """A head's arguments, and where each of the rule's variables is bound."""
     bound: dict[str, list[Slot]] = {}
     for literal in rule.body:
-        if literal.kind == "atom" and not literal.sign:
-            for atom in literal.atoms:
-                for place, text in enumerate(arguments_of(atom)):
-                    if VARIABLE.fullmatch(text):
-                        bound.setdefault(text, []).append((atom.signature, place))
+        for atom in literal.atoms if literal.kind == "atom" and not literal.sign else ():
+            for place, text in enumerate(arguments_of(atom)):
+                if VARIABLE.fullmatch(text):
+                    bound.setdefault(text, []).append((atom.signature, place))
     return head.signature, arguments_of(head), bound
 
 
@@ -104,7 +103,12 @@ def slip_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
     """Every finding about the constants and texts that rules use."""
     mine = introduced_names(own)
     names = mine | set(base.primitives)
-    words = closed([*base.rules, *(each for each in own if not _authored(each))])
+    words = closed(
+        [
+            *base.rules,
+            *(each for each in own if FITS not in {head.signature for head in each.heads}),
+        ]
+    )
     yield from _names(own)
     constants = base.constants | {each.defines for each in own if isinstance(each.defines, str)}
     for statement in own:
@@ -116,11 +120,6 @@ def slip_findings(own: Sequence[Statement], base: Known) -> Iterator[Finding]:
                 if atom.signature == FITS:
                     yield from _fits(atom, names)
                 yield from _foreign(atom, words, constants, names)
-
-
-def _authored(rule: Statement) -> bool:
-    """Whether it defines fits, whose arguments must not count as words of a segment."""
-    return any(head.signature == FITS for head in rule.heads)
 
 
 def _heads(rule: Statement, mine: set[str]) -> Iterator[Finding]:
@@ -284,57 +283,23 @@ def about_others(rule: Statement, slots: Iterable[Slot]) -> frozenset[str]:
 
     A head without a segment has the first one of the body.
     """
-    wanted, alike = frozenset(slots), _alike(rule)
-    home = {alike(term) for head in rule.heads for term in _terms(head, wanted)}
+    wanted = frozenset(slots)
+    texts = [each.text.replace(" ", "") for each in rule.body
+             if each.kind == "comparison" and not each.sign]  # fmt: skip
+    equal = [set(each.split("=")) for each in texts if re.fullmatch(r"[^=!<>]+=[^=!<>]+", each)]
+    home: set[str] = set()
     found = set()
-    for literal in rule.body:
-        terms = {alike(term) for atom in literal.atoms for term in _terms(atom, wanted)}
+    for literal in (None, *rule.body):
+        atoms = rule.heads if literal is None else literal.atoms
+        terms = {
+            "".join(text.split())
+            for atom in atoms
+            for at, text in enumerate(arguments_of(atom))
+            if (atom.signature, at) in wanted
+        }
         home = home or terms
-        if terms - home:
+        while more := set[str]().union(*(each for each in equal if each & home)) - home:
+            home |= more
+        if literal is not None and terms - home:
             found.add(literal.text)
     return frozenset(found)
-
-
-def _terms(atom: Atom, slots: frozenset[Slot]) -> list[str]:
-    places = enumerate(arguments_of(atom))
-    return [_spaceless(text) for at, text in places if (atom.signature, at) in slots]
-
-
-class _Alike:
-    """Terms that a rule equates, by one of them."""
-
-    def __init__(self) -> None:
-        self.leaders: dict[str, str] = {}
-
-    def join(self, left: str, right: str) -> None:
-        self.leaders[self(left)] = self(right)
-
-    def __call__(self, term: str) -> str:
-        while (leader := self.leaders.get(term, term)) != term:
-            term = leader
-        return term
-
-
-def _alike(rule: Statement) -> _Alike:
-    found = _Alike()
-    for left, right in equations(rule):
-        found.join(_spaceless(left), _spaceless(right))
-    return found
-
-
-def equations(rule: Statement) -> Iterable[tuple[str, str]]:
-    """The two sides of each equation of a rule."""
-    for literal in rule.body:
-        if sides := _sides(literal):
-            yield sides
-
-
-def _sides(literal: Literal) -> tuple[str, str] | None:
-    sides = literal.text.split(" = ")
-    if literal.kind == "comparison" and len(sides) == 2 and not literal.sign:
-        return sides[0], sides[1]
-    return None
-
-
-def _spaceless(text: str) -> str:
-    return "".join(text.split())

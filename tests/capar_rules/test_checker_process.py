@@ -8,7 +8,7 @@ import pytest
 from capar.model.errors import RuleError
 from capar_rules.lint import checking
 from capar_rules.lint.checker_process import Request
-from capar_rules.lint.checking import answers
+from capar_rules.lint.checking import answer
 
 LIMITED = """
 import sys
@@ -46,7 +46,7 @@ def test_a_file_that_exceeds_a_limit_is_refused_with_the_limit(
 ):
     monkeypatch.setattr(checking, "_START", LIMITED.format(judge=judge))
     asked = requests(tmp_path, "p(1).\n")
-    ((found,),) = answers(asked)
+    (found,) = answer(asked[0])
     assert (found.code, found.place.file) == ("unbounded", asked[0].files[0])
     assert reason in found.message
 
@@ -54,7 +54,7 @@ def test_a_file_that_exceeds_a_limit_is_refused_with_the_limit(
 def test_a_check_that_takes_too_long_is_ended_from_outside(tmp_path, monkeypatch):
     monkeypatch.setattr(checking, "_START", "import time; time.sleep(60)")
     monkeypatch.setattr(checking, "WALL_S", 0.2)
-    ((found,),) = answers(requests(tmp_path, "p(1).\n"))
+    (found,) = answer(requests(tmp_path, "p(1).\n")[0])
     assert found.code == "unbounded"
     assert "takes longer than" in found.message
 
@@ -62,7 +62,7 @@ def test_a_check_that_takes_too_long_is_ended_from_outside(tmp_path, monkeypatch
 def test_files_after_one_that_breaks_the_parser_are_checked_all_the_same(tmp_path):
     breaking = hostile_rules.BY_HAND["deep_minus"]
     asked = requests(tmp_path, "p(1).\n", breaking, "p(2).\n", breaking)
-    codes = [[each.code for each in found] for found in answers(asked)]
+    codes = [[each.code for each in found] for found in map(answer, asked)]
     assert "unbounded" in codes[1]
     assert codes[3] == codes[1]
     assert codes[0] == codes[2]
@@ -72,7 +72,7 @@ def test_files_after_one_that_breaks_the_parser_are_checked_all_the_same(tmp_pat
 def test_a_checker_that_fails_by_itself_blames_no_file(tmp_path, monkeypatch):
     monkeypatch.setattr(checking, "_START", "raise SystemExit('out of order')")
     with pytest.raises(RuleError, match="the checker process failed: out of order"):
-        answers(requests(tmp_path, "p(1).\n"))
+        answer(requests(tmp_path, "p(1).\n")[0])
 
 
 def test_no_package_forks_by_itself():

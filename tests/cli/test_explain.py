@@ -113,19 +113,13 @@ def test_no_line_of_the_picture_is_wider_than_it(tmp_path):
         assert float(each.get("x")) + width_in(each.text, points=12) * 72 < width
 
 
-def test_why_not_gives_one_answer_or_all():
+def test_why_not_gives_the_nearest_rule_with_what_it_lacks():
     asked = ["right_hand/2", "--why-not", "MoveObjTo", *THESIS]
     one = answered(*asked).splitlines()
-    every = answered(*asked, "--all").splitlines()
     assert one[0] == "Nearest rule: move_obj_to.lp:3 lacks"
-    assert [each.startswith("It would be") for each in one[-2:]] == [False, True]
-    assert [each.startswith("It would be") for each in every[-2:]] == [True, True]
-    assert one[-1] in every
     (row,) = json.loads(answered(*asked, "--json"))
-    assert row["sentence"] == one[-1]
     assert [each["sentence"] for each in row["rules"][0]["failing"]] == [one[1].strip()]
     assert (row["ee"], row["index"], row["is"]) == ("right_hand", 2, "MoveObj")
-    assert [each["holds"] for each in row["changes"]] in ([True], [False])
 
 
 def test_why_not_without_a_segment_asks_of_each_that_has_another_name():
@@ -133,9 +127,6 @@ def test_why_not_without_a_segment_asks_of_each_that_has_another_name():
     headers = [each for each in lines if each.startswith("right_hand/")]
     assert [each.split()[0][-1] for each in headers] == ["0", "2", "4", "5"]
     assert headers[0].endswith("Reach")
-    for each in headers:
-        below = lines[lines.index(each) + 1 :]
-        assert next(line for line in below if line.startswith("It would be "))
     assert lines.count("Nearest rule: move_obj_to.lp:3 lacks") >= 2
 
 

@@ -119,7 +119,7 @@ def test_explain_tells_those_of_the_bodies_that_its_segment_is_about(
     place = bundle(0, 0)
     for arguments in ((place,), (place, "right_hand/1"), (place, "--why-not", "Hit")):
         told, _, notes = run("explain", *arguments).partition(f"\n{HEADING}\n")
-        assert "the right hand touched the box" in told or "Hit" in told
+        assert "the right hand touched the box" in told or "Nearest rule: hit" in told
         assert "box" in notes
         assert "post" not in notes
     for arguments in ((), ("--why-not", "Hit")):
