@@ -127,7 +127,7 @@ def _export_plan(name: str, format_: str, output: Path | None, actionary: str | 
 
     The action is that of a capture at a path, else of an observation in the Actionary.
     """
-    from capar.pipelines.plan_export import capture_plan, plan_files, stored_plan
+    from capar.pipelines.plan_export import observed_plan, plan_files, stored_plan
     from kb import Actionary
 
     if not name:
@@ -139,7 +139,7 @@ def _export_plan(name: str, format_: str, output: Path | None, actionary: str | 
         (check_new_folder if folder else check_writable)(output)
     place = opened(actionary)
     if Path(name).exists() or Path(name.rpartition(":")[0] or name).exists():
-        source = capture_plan(name)
+        source = observed_plan(name)
     elif has_actionary(place, named=actionary):
         with Actionary.open(place, read_only=True) as words:
             source = stored_plan(words, name)

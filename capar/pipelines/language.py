@@ -21,21 +21,8 @@ if TYPE_CHECKING:
     from capar_rules.engine.profiles import Profile
     from kb.store.stores import Store
 
-CONTACT_CLASSES = (
-    "9",
-    "10",
-    "11",
-    "12",
-    "13",
-    "15",
-    "16",
-    "17",
-    "18",
-    "19",
-    "20",
-    "22",
-    "39",
-    "40",
+CONTACT_CLASSES = frozenset(
+    ["9", "10", "11", "12", "13", "15", "16", "17", "18", "19", "20", "22", "39", "40"]
 )
 """Levin's chapters whose verbs say what a body does to things and to itself."""
 
@@ -91,33 +78,30 @@ def verbs_for(
     observation = observe(capture, rules=rules)
     found = find_segment(observation.links, place, capture=observation.capture)
     seen = SegmentSeen(found.name, found.general, found.features)
-    return fitting(seen, words, _classes(store) if store else ())
-
-
-def _classes(store: "Store") -> tuple[VerbClass, ...]:
-    """VerbNet's classes of the chapters about bodies and things."""
-    if not has_source(store, "verbnet"):
-        return ()
-    numbers = [each for each in levin_classes() if each.partition(".")[0] in CONTACT_CLASSES]
-    return tuple(each for number in numbers for each in verbnet_class_of(store, number))
+    classes: list[VerbClass] = []
+    if store and has_source(store, "verbnet"):
+        for number in levin_classes():
+            if number.partition(".")[0] in CONTACT_CLASSES:
+                classes += verbnet_class_of(store, number)
+    return fitting(seen, words, tuple(classes))
 
 
 def vocabulary(words: Sequence[PrimitiveWords], store: "Store | None" = None) -> Vocabulary:
     """What sentences can refer to: with a store, only the objects and agents that it knows."""
     if store is None:
         return Vocabulary(tuple(words))
-    objects = _names(store, f"?thing {CAPAR.tag} ?tag ; {CAPAR.name} ?name")
-    kinds = _names(store, f"?thing {CAPAR.kind}/{CAPAR.name} ?name")
-    effectors = _names(store, f"?link {CAPAR.ee} ?name")
-    agents = _names(store, f"?seen {CAPAR.agent}/{CAPAR.name} ?name")
+
+    def names(where: str) -> set[str]:
+        rows = store.ask(f"SELECT DISTINCT ?name WHERE {{ {where} }}").plain()
+        return {str(row["name"]) for row in rows if row["name"]}
+
+    objects = names(f"?thing {CAPAR.tag} ?tag ; {CAPAR.name} ?name")
+    kinds = names(f"?thing {CAPAR.kind}/{CAPAR.name} ?name")
+    effectors = names(f"?link {CAPAR.ee} ?name")
+    agents = names(f"?seen {CAPAR.agent}/{CAPAR.name} ?name")
     return Vocabulary(
         tuple(words),
         frozenset(objects | kinds) if objects else None,
         frozenset({*EFFECTORS, *effectors}),
         frozenset(agents),
     )
-
-
-def _names(store: "Store", where: str) -> set[str]:
-    rows = store.ask(f"SELECT DISTINCT ?name WHERE {{ {where} }}").plain()
-    return {str(row["name"]) for row in rows if row["name"]}

@@ -55,44 +55,27 @@ def primitive_words(files: Sequence[Path]) -> tuple[PrimitiveWords, ...]:
     """
     found: dict[str, PrimitiveWords] = {}
     for path in files:
-        stated = _stated(path)
+        try:
+            text = path.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise FileError(path, f"cannot be read ({error});", "name a rule file.") from None
+        stated: dict[str, list[tuple[str, ...]]] = {}
+        for match in _FACT.finditer(_TEXT_OR_COMMENT.sub(r"\1", text)):
+            arguments = tuple(str(json.loads(each)) for each in _SAID.findall(match["arguments"]))
+            stated.setdefault(match["predicate"], []).append(arguments)
         for (name,) in (each for each in stated.get("primitive", ()) if len(each) == 1):
             if name in found:
                 raise RuleError(
                     f"{path}: primitive {name!r} is also stated by {found[name].file}; "
                     "one file states a primitive"
                 )
-            found[name] = _words(stated, name, f"{path.parent.name}/{path.name}")
+            verbs, general, senses, levin, prepositions = (
+                tuple(row[1] for row in stated.get(kind, ()) if row[0] == name and len(row) == 2)
+                for kind in ("verb", "specialises", "sense", "levin", "preposition")
+            )
+            file = f"{path.parent.name}/{path.name}"
+            found[name] = PrimitiveWords(name, verbs, general, senses, levin, prepositions, file)
     return tuple(sorted(found.values()))
-
-
-def _stated(path: Path) -> dict[str, list[tuple[str, ...]]]:
-    """Facts over texts and numbers that stand in a rule file, by predicate, in their order."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(path, f"cannot be read ({error});", "name a rule file.") from None
-    facts: dict[str, list[tuple[str, ...]]] = {}
-    for match in _FACT.finditer(_TEXT_OR_COMMENT.sub(r"\1", text)):
-        arguments = tuple(str(json.loads(each)) for each in _SAID.findall(match["arguments"]))
-        facts.setdefault(match["predicate"], []).append(arguments)
-    return facts
-
-
-def _words(stated: dict[str, list[tuple[str, ...]]], name: str, file: str) -> PrimitiveWords:
-    def second(predicate: str) -> tuple[str, ...]:
-        rows = stated.get(predicate, [])
-        return tuple(row[1] for row in rows if len(row) == 2 and row[0] == name)
-
-    return PrimitiveWords(
-        name,
-        second("verb"),
-        second("specialises"),
-        second("sense"),
-        second("levin"),
-        second("preposition"),
-        file,
-    )
 
 
 def cases_of(files: Sequence[Path], folder: Path | None = None) -> tuple[Case, ...]:
@@ -108,11 +91,8 @@ def cases_of(files: Sequence[Path], folder: Path | None = None) -> tuple[Case, .
     """
     found = set[Case]()
     for path in files:
-        stories = [
-            each.story
-            for each in read_examples(path.read_text(encoding="utf-8"), file=path)
-            if each.positive
-        ]
+        examples = read_examples(path.read_text(encoding="utf-8"), file=path)
+        stories = [each.story for each in examples if each.positive]
         for words in primitive_words([path]):
             found |= {Case(words.name, f"{words.file}: {story}") for story in stories}
     if folder is not None:
@@ -143,18 +123,13 @@ def linguistics(
     words = primitive_words(chosen)
     seen: tuple[Seen, ...] = seen_in(store) if store else ()
     members = verbnet_members(every_verbnet_member(store)) if store else {}
-    facts = lexical_facts(words, members=members, rules=_stems(chosen), seen=seen, cases=cases)
-    answer = solve([rule_file(MAIN)], facts)
+    # The names of every rule file that counts: what ships beside the primitives, and these.
+    rules = sorted({each.stem for each in (*rule_file("").rglob("*.lp"), *chosen)})
+    facts = lexical_facts(words, members=members, rules=rules, seen=seen, cases=cases)
     rows: dict[str, list[tuple[str, ...]]] = {}
-    for predicate, arguments in answer.atoms:
+    for predicate, arguments in solve([rule_file(MAIN)], facts).atoms:
         rows.setdefault(predicate, []).append(tuple(map(str, arguments)))
     return assemble(rows, words, seen, members)
-
-
-def _stems(files: Sequence[Path]) -> list[str]:
-    """Names of every rule file that counts: what ships beside the primitives, and these."""
-    shipped = {each.stem for each in rule_file("").rglob("*.lp")}
-    return sorted(shipped | {each.stem for each in files})
 
 
 def standing(verb: str, words: Sequence[PrimitiveWords]) -> Standing:
@@ -162,11 +137,11 @@ def standing(verb: str, words: Sequence[PrimitiveWords]) -> Standing:
     facts = lexical_facts(words, members={}, verbs=(verb,), classes=False)
     answer = solve([rule_file(MAIN)], facts)
 
-    def primitives(predicate: str) -> tuple[str, ...]:
-        return tuple(str(row[0]) for row in answer.of(predicate) if row[1] == verb)
-
-    represented = primitives("represents")
-    return Standing(represented, () if represented else primitives("generalises"))
+    does, general = (
+        tuple(str(row[0]) for row in answer.of(predicate) if row[1] == verb)
+        for predicate in ("represents", "generalises")
+    )
+    return Standing(does, () if does else general)
 
 
 def answer_verb(

@@ -113,7 +113,7 @@ class Measures:
     def _valued(self, asked: Measured) -> Measured | None:
         frames = np.unique([asked.first, asked.last])
         series = self.series(asked, frames if asked.quantity == "distance" else None)
-        value = series and series.within(asked.first, asked.last)
+        value = None if series is None else series.within(asked.first, asked.last)
         if series is None or value is None or not math.isfinite(value):
             return None
         scale = QUANTITIES[asked.quantity].scale

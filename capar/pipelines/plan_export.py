@@ -6,7 +6,7 @@ from pathlib import Path
 from capar.export.pddl import pddl
 from capar.export.plans import PlanSource, behavior_tree, bml, plan_source
 from capar.model.errors import UnknownNameError
-from capar.model.facts import Fact, Frames, LookingAt, RateMhz
+from capar.model.facts import Fact, LookingAt, RateMhz
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
@@ -18,23 +18,19 @@ PLAN_FORMATS = ("pddl", "bt", "bml")
 """PDDL 2.1 domain and problem, BehaviorTree.CPP 4 XML, and BML 1.0."""
 
 
-def observed_plan(observation: Observation) -> PlanSource:
-    """The complex action of an observation.
+def observed_plan(seen: Observation | Path | str) -> PlanSource:
+    """The complex action of an observation, or of what is observed in a capture.
 
     Raises:
         PlanExportError: It has no steps.
+        CaparError: The capture has a fault.
     """
-    stated = {each.name: kind_of(each) for each in observation.objects}
+    observation = seen if isinstance(seen, Observation) else observe(seen)
+    par, stated = observation.complex_par, {o.name: kind_of(o) for o in observation.objects}
     with Actionary.in_memory() as words:
-        kinds = {name: words.kinds_above(stated[name]) for name in observation.complex_par.objects}
-    return plan_source(
-        observation.complex_par,
-        observation.ipars,
-        observation.upars,
-        kinds,
-        name=observation.complex_par.name,
-        looks=_looks(observation.facts),
-    )
+        kinds = {name: words.kinds_above(stated[name]) for name in par.objects}
+    looks = _looks(observation.facts)
+    return plan_source(par, observation.ipars, observation.upars, kinds, name=par.name, looks=looks)
 
 
 def stored_plan(actionary: Actionary, name: str) -> PlanSource:
@@ -43,32 +39,22 @@ def stored_plan(actionary: Actionary, name: str) -> PlanSource:
     Raises:
         UnknownNameError: There is none of that name.
     """
-    seen = actionary.observations()
-    known = {each.name: each.name for each in seen}
-    chosen = known.get(name) or next((each.name for each in seen if each.action == name), None)
+    seen = {each.name: each.action for each in actionary.observations()}
+    chosen = name if name in seen else next((n for n, done in seen.items() if done == name), None)
     if chosen is None:
-        raise UnknownNameError("observation", name, known, where=str(actionary.store.place))
+        raise UnknownNameError("observation", name, seen, where=str(actionary.store.place))
     par = actionary.complex_par(chosen)
-    stated = _stated_kinds(actionary, chosen)
+    text = f"""SELECT DISTINCT ?name ?kind WHERE {{
+  ?seen {CAPAR.capture}/{CAPAR.name} ?capture ; {CAPAR.object} ?thing .
+  ?thing {CAPAR.name} ?name ; {CAPAR.kind}/{CAPAR.name} ?kind .
+  FILTER(?capture = "{chosen}")
+}}"""
+    stated = {str(r["name"]): str(r["kind"]) for r in actionary.store.ask(text).plain()}
     kinds = {each: actionary.kinds_above(stated.get(each, each)) for each in par.objects}
-    action = next(each.action for each in seen if each.name == chosen)
+    looks = _looks(stored_facts(actionary.store, chosen))
     return plan_source(
-        par,
-        actionary.ipars(chosen),
-        actionary.upars(),
-        kinds,
-        name=action,
-        looks=_looks(stored_facts(actionary.store, chosen)),
+        par, actionary.ipars(chosen), actionary.upars(), kinds, name=seen[chosen], looks=looks
     )
-
-
-def capture_plan(capture: Path | str) -> PlanSource:
-    """The complex action that is observed in a capture.
-
-    Raises:
-        CaparError: The capture has a fault, or nobody acts in it.
-    """
-    return observed_plan(observe(capture))
 
 
 def plan_files(source: PlanSource, format_name: str) -> dict[str, str]:
@@ -87,25 +73,10 @@ def plan_files(source: PlanSource, format_name: str) -> dict[str, str]:
     raise UnknownNameError("plan format", format_name, PLAN_FORMATS)
 
 
-def _stated_kinds(actionary: Actionary, observation: str) -> dict[str, str]:
-    """The kind of every object of an observation."""
-    text = f"""SELECT DISTINCT ?name ?kind WHERE {{
-  ?seen {CAPAR.capture}/{CAPAR.name} ?capture ; {CAPAR.object} ?thing .
-  ?thing {CAPAR.name} ?name ; {CAPAR.kind}/{CAPAR.name} ?kind .
-  FILTER(?capture = "{observation}")
-}}"""
-    rows = actionary.store.ask(text).plain()
-    return {str(row["name"]): str(row["kind"]) for row in rows}
-
-
 def _looks(measured: Iterable[Fact]) -> Iterator[tuple[str, float, float]]:
     """What was looked at, from when to when [s]."""
     known = tuple(measured)
     rate = next((each.rate / 1000.0 for each in known if isinstance(each, RateMhz)), 0.0)
-    if not rate or not any(isinstance(each, Frames) for each in known):
-        return
-    found = sorted(
-        (each.first, each.last, each.object) for each in known if isinstance(each, LookingAt)
-    )
-    for first, last, seen in found:
-        yield seen, first / rate, last / rate
+    looks = (each for each in known if isinstance(each, LookingAt))
+    for first, last, name in sorted((e.first, e.last, e.object) for e in looks if rate):
+        yield name, first / rate, last / rate

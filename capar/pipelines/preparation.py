@@ -20,38 +20,30 @@ from capar.pipelines.observation import observe
 from capar.pipelines.recordings import Performed, Recording
 from capar.pipelines.round_trips import by_hand, observed_source
 from capar.pipelines.trials import trial_of
+from capar.regeneration import quality as gates
+from capar.regeneration import roles
 from capar.regeneration.captures import OTHER, Completion, completed, scene_after
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.goals import put_down_poses
 from capar.regeneration.planning import is_possible
-from capar.regeneration.quality import (
-    HEAD,
-    TOUCHES_M,
-    Asserted,
-    Contact,
-    Quality,
-    contact_distances,
-    contact_gate,
-    contacts_of,
-    failures,
-)
-from capar.regeneration.roles import (
-    Kinds,
-    captured_scene,
-    cast,
-    ends_on,
-    kind_of,
-    own_names,
-    with_only,
-)
+from capar.regeneration.quality import Asserted, Quality
+from capar.regeneration.roles import Kinds, kind_of
 from capar.regeneration.scenes import PlanError, Scene, mobile, moved
 from capar.regeneration.search import regenerate
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import Source, source_of
 from capar_rules.engine.solver import Answer, Term, best, rule_file, text_of
 
-MARGIN_S = 0.3
-"""So long a contact is kept before a step that ends it, or after one that makes it [s]."""
+MARGIN_S = 0.3  # So long a contact is kept before a step that ends it, or after one that makes it.
+ROOM_M = 0.01  # Objects that are nearer are in each other's path.
+ASIDE_M = 0.06  # So far from others an object is put: a hand has room between them.
+EDGE_M = 0.02  # How far an object that is put down stays from its support's edge.
+STEP_M = 0.06  # Of the grid on which places are sought.
+ARM = 0.42  # How far from where it stands a body puts objects, as a share of its stature.
+MOST = 8  # Places that are offered on each support.
+MOST_STEPS = 16  # A plan has no more steps than this.
+MOST_TRIES = 10  # So many stages are found impossible before the action is refused.
+PROGRAM = "planning/preparing.lp"
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,8 +86,14 @@ class Procedure:
         begin = max(starts[first] - lead, 0) if first else 0
         end = min(starts[last + 1] + tail, final)
         if (begin, end) != (0, final):
-            times = source.capture.times
-            source = _cut(source, float(times[begin]), float(times[end]))
+            # By a performer who stands where the whole was performed.
+            times, scene = source.capture.times, source.scene
+            part = Completion(from_s=float(times[begin]), to_s=float(times[end]))
+            capture = completed(source.capture, part)
+            seen = observe(capture, rules=source.observation.profile)
+            stance = (scene.place, scene.heading)
+            made = source_of(capture, seen, stance=stance, floor_m=scene.floor_m)
+            source = replace(made, notes=source.notes)
         return by_hand(source, side) if any(h.side != side for h in source.holds) else source
 
 
@@ -140,45 +138,17 @@ def steps_of(observation: Observation) -> PlanSource:
 
 def asserted(source: Source) -> list[Asserted]:
     """What the steps of a performance assert at their ends, in order of time."""
-    names = {name: name for name in source.paths} | {HEAD: HEAD}
+    names = {name: name for name in source.paths} | {gates.HEAD: gates.HEAD}
     names |= {hand.sensor: side for side, hand in source.hands.items()}
     last = len(source.times) - 1
     found = []
     for steps in steps_of(source.observation).links.values():
         for one in steps:
             frame = round((one.step.begin + one.step.share) * last)
-            contacts = contacts_of(one.ipar.post_assertions, names)
+            contacts = gates.contacts_of(one.ipar.post_assertions, names)
             found.append(Asserted(one.step.action, frame, contacts, one.ipar.core.moved))
     return sorted(found, key=lambda step: step.frame)
 
-
-def _cut(source: Source, from_s: float, to_s: float) -> Source:
-    """A part of what was recorded, by a performer who stands where the whole one did."""
-    scene = source.scene
-    capture = completed(source.capture, Completion(from_s=from_s, to_s=to_s))
-    observation = observe(capture, rules=source.observation.profile)
-    stance = (scene.place, scene.heading)
-    made = source_of(capture, observation, stance=stance, floor_m=scene.floor_m)
-    return replace(made, notes=source.notes)
-
-
-ROOM_M = 0.01
-"""Objects that are nearer are in each other's path [m]."""
-
-ASIDE_M = 0.06
-"""So far from others an object is put: a hand has room between them [m]."""
-
-EDGE_M = 0.02
-"""How far an object that is put down stays from its support's edge [m]."""
-
-STEP_M = 0.06
-"""Of the grid on which places are sought [m]."""
-
-ARM = 0.42
-"""How far from where it stands a body puts objects, as a share of its stature [1]."""
-
-MOST = 8
-"""Places that are offered on each support [1]."""
 
 Spot = tuple[float, float, float]
 
@@ -447,11 +417,6 @@ def _fact(name: str, *arguments: Term) -> str:
     return f"{text_of((name, *arguments))}."
 
 
-MOST_STEPS = 16
-"""A plan has no more steps than this [1]."""
-
-PROGRAM = "planning/preparing.lp"
-
 Failed = tuple[str, str, str, Term]
 """A recording, a hand, an object and a place, or ``any``, that were tried and are not possible."""
 
@@ -561,41 +526,31 @@ def _stages(
     by_name = {way.recording.name: way for way in ways}
     by_term = {place.term: place for place in places}
     brought = {(time, thing): by_term[term] for time, thing, term in answer.of("brings")}
-    rows: list[list[tuple[int, Planned, Term]]] = []
-    for time, name, hand, thing, number in answer.of("does"):
-        assert isinstance(time, int) and isinstance(number, int)
-        place, who = brought.get((time, thing)), (str(name), str(hand), str(thing))
-        step = Planned(
-            by_name[who[0]].steps[number].step.action, who[1], who[2], who[0], number,
-            _spot(place), place.support if place else "",
-        )  # fmt: skip
-        last = rows[-1][-1][1] if rows else None
-        if last is None or (last.recording, last.hand, last.thing, last.number + 1) != (
-            *who,
-            number,
-        ):
+    rows: list[list[tuple[Planned, Term | None, Term]]] = []
+    for time, *who, number in answer.of("does"):
+        name, hand, thing = map(str, who)
+        assert isinstance(number, int)
+        place, spot = brought.get((time, thing)), None
+        if place:
+            x, y, z = place.pose.translation
+            spot = (float(x), float(y), float(z))
+        action = by_name[name].steps[number].step.action
+        support = place.support if place else ""
+        step = Planned(action, hand, thing, name, number, spot, support)
+        last = rows[-1][-1][0] if rows else None
+        follows = (name, hand, thing, number - 1)
+        if last is None or (last.recording, last.hand, last.thing, last.number) != follows:
             rows.append([])
-        rows[-1].append((time, step, place.term if place else "any"))
+        rows[-1].append((step, place and place.term, time))
     return tuple(
         Stage(
-            by_name[row[0][1].recording],
-            tuple(step for _, step, _ in row),
-            next((term for _, _, term in reversed(row) if term != "any"), "any"),
-            frozenset((str(h), str(t)) for at, h, t in answer.of("touch") if at == row[-1][0]),
+            by_name[row[0][0].recording],
+            tuple(step for step, _, _ in row),
+            next((term for _, term, _ in reversed(row) if term is not None), "any"),
+            frozenset((str(h), str(t)) for at, h, t in answer.of("touch") if at == row[-1][2]),
         )
         for row in rows
     )
-
-
-def _spot(place: Place | None) -> Spot | None:
-    if place is None:
-        return None
-    x, y, z = (float(value) for value in place.pose.translation)
-    return x, y, z
-
-
-MOST_TRIES = 10
-"""So many stages are found impossible at most before the action is refused [1]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -647,7 +602,7 @@ def captured_world(place: Capture | Path | str) -> World:
         CaparError: It has a fault, no sensor of the head, or an object without a shape.
     """
     trial = trial_of(place)
-    return _world(trial, observe(trial), captured_scene(trial))
+    return _world(trial, observe(trial), roles.captured_scene(trial))
 
 
 def _world(capture: Capture, observation: Observation, scene: Scene) -> World:
@@ -709,11 +664,11 @@ def _performed(
         made.append(_stage(stage, world, human))
         motion, names = made[-1].motion, made[-1].names
         around = Surroundings(motion.plan.human, motion.plan.scene)
-        near = contact_distances(around, motion, len(motion.postures) - 1)
+        near = gates.contact_distances(around, motion, len(motion.postures) - 1)
         touching = frozenset(
             (side, names[thing])
             for (side, thing), apart_m in near.items()
-            if side in {"right", "left"} and thing in names and apart_m <= TOUCHES_M
+            if side in {"right", "left"} and thing in names and apart_m <= gates.TOUCHES_M
         )
         world = World(scene_after(motion, names, world.scene), touching)
     return tuple(made), world
@@ -723,38 +678,29 @@ def _stage(stage: Stage, world: World, human: Human) -> Done:
     first, goal, scene = stage.steps[0], stage.goal, world.scene
     try:
         source = stage.way.part_of(first.number, stage.steps[-1].number, first.hand)
-        parts = _parts(stage, source, world)
-        source = with_only(source, parts)
+        # The object, and what it stands on at both ends, in the parts of the recorded ones.
+        parts = {stage.way.part: first.thing}
+        begins_on, ends_on = roles.ends_on(source, stage.way.part)
+        beneath = scene.support(first.thing)
+        for role, support in ((ends_on, goal.support if goal else beneath), (begins_on, beneath)):
+            if role and support and role not in parts and support not in parts.values():
+                parts[role] = support
+        source = roles.with_only(source, parts)
         spots = {first.thing: goal.place} if goal and goal.place else {}
-        made, where = cast(source, replace(scene, spots=spots), parts)
+        made, where = roles.cast(source, replace(scene, spots=spots), parts)
         if not is_possible(made, where, human):
             raise PlanError("out of reach")
         motion, quality = regenerate(made, human, where)
     except PlanError as error:
         raise StageError(stage, str(error)) from error
-    names = own_names(source, scene, parts)
+    names = roles.own_names(source, scene, parts)
     own = {name: role for role, name in names.items()}
-    held: tuple[Contact, bool] = (
-        (first.hand, own[first.thing]), (first.hand, first.thing) in stage.touching
-    )  # fmt: skip
-    put: list[tuple[Contact, bool]] = []
-    if goal:
-        put = [((own[first.thing], own[goal.support]), True)]
-    planned = Asserted("the plan's stage", len(made.times) - 1, (held, *put), "")
-    gate = contact_gate(motion, [*asserted(made), planned])
+    held = (first.hand, first.thing) in stage.touching
+    contacts: list[tuple[gates.Contact, bool]] = [((first.hand, own[first.thing]), held)]
+    contacts += [((own[first.thing], own[goal.support]), True)] if goal else []
+    planned = Asserted("the plan's stage", len(made.times) - 1, tuple(contacts), "")
+    gate = gates.contact_gate(motion, [*asserted(made), planned])
     quality = Quality((*quality.gates, gate), quality.told)
     if not quality.passed:
-        raise StageError(stage, f"it fails {failures(quality)}")
+        raise StageError(stage, f"it fails {gates.failures(quality)}")
     return Done(motion, quality, names, None, stage)
-
-
-def _parts(stage: Stage, source: Source, world: World) -> dict[str, str]:
-    """The object, and what it stands on at both ends, in the parts of the recorded ones."""
-    step, goal = stage.steps[0], stage.goal
-    parts = {stage.way.part: step.thing}
-    first, last = ends_on(source, stage.way.part)
-    beneath = world.scene.support(step.thing)
-    for role, support in ((last, goal.support if goal else beneath), (first, beneath)):
-        if role and support and role not in parts and support not in parts.values():
-            parts[role] = support
-    return parts

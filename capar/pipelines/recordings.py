@@ -86,11 +86,15 @@ def stored_recordings(
         actionary: What was observed.
         folder: With captures in it, or in the folders in it.
     """
+    files = sorted([*folder.glob(BUNDLE), *folder.glob(f"*/{BUNDLE}")], reverse=True)
+    captures = {sha256(each.read_bytes()).hexdigest(): each for each in files}
     found, lost = [], []
-    captures = _captures(folder)
     general = _general(actionary.upars())
     for each in sorted(actionary.observations(), key=lambda one: one.name):
-        place = _place(actionary, each.name, captures)
+        text = f"SELECT ?sum WHERE {{ GRAPH {names.observation(each.name)} {{ "
+        text += f"?file a {CAPAR.SourceFile} ; {CAPAR.sha256} ?sum }} }}"
+        sums = sorted(str(row["sum"]) for row in actionary.store.ask(text).plain())
+        place = next((captures[one] for one in sums if one in captures), None)
         if place is None:
             lost.append(each.name)
             continue
@@ -105,18 +109,3 @@ def _general(upars: tuple[Upar, ...]) -> dict[str, frozenset[str]]:
     for each in upars:
         found.setdefault(each.name, set()).update(each.general)
     return {name: frozenset(above) for name, above in found.items()}
-
-
-def _captures(folder: Path) -> dict[str, Path]:
-    """Captures in a folder and in the folders in it, by the SHA-256 of what describes them."""
-    files = sorted([*folder.glob(BUNDLE), *folder.glob(f"*/{BUNDLE}")], reverse=True)
-    return {sha256(each.read_bytes()).hexdigest(): each for each in files}
-
-
-def _place(actionary: Actionary, observation: str, captures: Mapping[str, Path]) -> Path | None:
-    """Where the capture of an observation is, if it is among those."""
-    seen = names.observation(observation)
-    text = f"SELECT ?sum WHERE {{ GRAPH {seen} {{ ?file a {CAPAR.SourceFile} ; "
-    text += f"{CAPAR.sha256} ?sum }} }}"
-    sums = sorted(str(row["sum"]) for row in actionary.store.ask(text).plain())
-    return next((captures[each] for each in sums if each in captures), None)
