@@ -541,7 +541,7 @@ def _stages(
         follows = (name, hand, thing, number - 1)
         if last is None or (last.recording, last.hand, last.thing, last.number) != follows:
             rows.append([])
-        rows[-1].append((step, place and place.term, time))
+        rows[-1].append((step, place.term if place else None, time))
     return tuple(
         Stage(
             by_name[row[0][0].recording],

@@ -5,13 +5,11 @@ from pathlib import Path
 
 import pytest
 from pympi import Eaf
-from typer.testing import CliRunner, Result
+from shell import DEMO, run
+from shell import refused as refusal
 
-from capar.cli import app
-from capar.model.errors import CaparError
 from capar.pipelines.observation import observe
 
-DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"
 HEAD = "link,start_s,end_s,label\n"
 RULES = "".join(
     f'[[rule]]\nname = "{name}"\nlabel = "{name}"\n'
@@ -34,29 +32,15 @@ def segments() -> list[tuple[str, float, float, str]]:
     ]
 
 
-def run(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["evaluate", *map(str, arguments)])
-
-
-def mapping(folder: Path) -> Path:
+def options(folder: Path) -> tuple[object, ...]:
     path = folder / "mapping.toml"
     path.write_text(RULES)
-    return path
+    return "--mapping", path
 
 
-def evaluated(folder: Path, labels: Path, *options: object) -> dict:
-    result = run(DEMO, labels, "--mapping", mapping(folder), "--json", *options)
-    assert result.exit_code == 0, result.output
-    out: dict = json.loads(result.stdout)
+def evaluated(*arguments: object) -> dict:
+    out: dict = json.loads(run("evaluate", DEMO, *arguments, "--json"))
     return out
-
-
-def refused(folder: Path, text: str, *options: object, name: str = "labels.csv") -> str:
-    path = folder / name
-    path.write_text(text)
-    result = run(DEMO, path, "--mapping", mapping(folder), *options)
-    assert isinstance(result.exception, CaparError)
-    return str(result.exception)
 
 
 def test_labels_in_csv_json_elan_and_praat_of_what_is_printed_score_100(
@@ -79,7 +63,7 @@ def test_labels_in_csv_json_elan_and_praat_of_what_is_printed_score_100(
     elan.to_file(str(tmp_path / "a.eaf"))
     praat.to_file(str(tmp_path / "a.TextGrid"))
     for path in (table, listed, tmp_path / "a.eaf", tmp_path / "a.TextGrid"):
-        found = evaluated(tmp_path, path)["all"]
+        found = evaluated(path, *options(tmp_path))["all"]
         assert (found["edit"], found["f1@50"]) == (100.0, 100.0)
         assert found["accuracy"] >= 99.0
         assert found["onset_ms"]["p95"] <= 1.0
@@ -102,7 +86,9 @@ def test_labels_in_csv_json_elan_and_praat_of_what_is_printed_score_100(
 def test_a_bad_label_file_is_refused_with_file_and_line(
     text: str, says: str, tmp_path: Path
 ) -> None:
-    assert says in refused(tmp_path, text)
+    path = tmp_path / "labels.csv"
+    path.write_text(text)
+    assert says in refusal("evaluate", DEMO, path, *options(tmp_path))
 
 
 def test_labels_may_be_of_a_part_of_the_time_and_of_few_actions(
@@ -110,7 +96,7 @@ def test_labels_may_be_of_a_part_of_the_time_and_of_few_actions(
 ) -> None:
     path = tmp_path / "labels.csv"
     path.write_text(HEAD + ",".join(map(str, segments[0])) + "\n")
-    found = evaluated(tmp_path, path)
+    found = evaluated(path, *options(tmp_path))
     assert found["all"]["accuracy"] == 100.0
     assert found["all"]["segments"]["true"] == 1
     assert any("is in no label file" in each for each in found["notices"])
@@ -119,8 +105,7 @@ def test_labels_may_be_of_a_part_of_the_time_and_of_few_actions(
 def test_contacts_are_scored_against_labels_of_one_pair(tmp_path: Path) -> None:
     path = tmp_path / "contacts.csv"
     path.write_text("body,other,start_s,end_s\nright_hand,mug,0.9,3.2\n")
-    result = run(DEMO, path, "--kind", "contacts", "--json")
-    found = json.loads(result.stdout)
+    found = evaluated(path, "--kind", "contacts")
     assert set(found["bodies"]) == {"right_hand"}
     assert 50.0 < found["all"]["f1"] <= 100.0
 
@@ -128,7 +113,7 @@ def test_contacts_are_scored_against_labels_of_one_pair(tmp_path: Path) -> None:
 def test_a_printed_carry_is_scored_against_its_label(tmp_path: Path) -> None:
     path = tmp_path / "carries.csv"
     path.write_text("object,start_s,end_s\nmug,1.0,3.0\n")
-    found = json.loads(run(DEMO, path, "--kind", "carries", "--json").stdout)["all"]
+    found = evaluated(path, "--kind", "carries")["all"]
     assert (found["carries"], found["counted"]) == (1, 1)
     assert found["start_ms"]["matched"] == found["end_ms"]["matched"] == 1
 
@@ -136,7 +121,7 @@ def test_a_printed_carry_is_scored_against_its_label(tmp_path: Path) -> None:
 def test_a_hand_may_do_events_that_are_segments(tmp_path: Path) -> None:
     path = tmp_path / "events.csv"
     path.write_text("hand,event,start_s,end_s,other\nright_hand,Reach,0.5,0.6,mug\n")
-    found = json.loads(run(DEMO, path, "--kind", "events", "--json").stdout)["events"]
+    found = evaluated(path, "--kind", "events")["events"]
     assert found["Reach"]["found"] == 1
 
 
@@ -144,11 +129,9 @@ def test_a_hand_may_do_events_that_are_segments(tmp_path: Path) -> None:
     ("arguments", "says"),
     [
         (["a.toml", "--kind", "carries"], "an evaluation file says itself what --kind would say"),
-        ([str(DEMO), "l.csv", "--takes", "x"], "--takes belongs to an evaluation file"),
-        ([str(DEMO), "l.csv", str(DEMO)], "3 arguments: each capture is followed by its label"),
+        ([DEMO, "l.csv", "--takes", "x"], "--takes belongs to an evaluation file"),
+        ([DEMO, "l.csv", DEMO], "3 arguments: each capture is followed by its label"),
     ],
 )
 def test_arguments_that_do_not_fit_are_refused(arguments: list[str], says: str) -> None:
-    result = run(*arguments)
-    assert isinstance(result.exception, CaparError)
-    assert says in str(result.exception)
+    assert says in refusal("evaluate", *arguments)

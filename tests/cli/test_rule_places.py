@@ -5,13 +5,11 @@ from pathlib import Path
 
 import pytest
 import typer
-from typer.testing import CliRunner
+from shell import DEMO, capar, run
 
 from capar.cli import app
 from capar.model.errors import CaparError, FileError, RuleError
 from kb.actionary import Actionary
-
-DEMO = str(Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug")
 
 SIP = """%* Sip: a possessed object is held to what it touches. *%
 primitive("Sip").
@@ -71,12 +69,6 @@ def kept(folder: str, name: str, text: str) -> Path:
     return path
 
 
-def run(*arguments: str) -> str:
-    result = CliRunner().invoke(app, list(arguments), catch_exceptions=False)
-    assert result.exit_code == 0, result.output
-    return result.stdout
-
-
 def with_rules(group: object, path: str = "") -> set[str]:
     """The commands below a group that take --rules."""
     if not hasattr(group, "list_commands"):
@@ -99,7 +91,7 @@ def test_every_command_that_takes_rules_is_tried_here():
 def test_a_bad_rule_reaches_the_solver_through_no_command(command, place, monkeypatch):
     bad = kept(place, "bad", BAD)
     monkeypatch.setenv("CAPAR_ACTIONARY", "actionary")
-    result = CliRunner().invoke(app, [*command.split(), *COMMANDS[command]])
+    result = capar(*command.split(), *COMMANDS[command])
     assert isinstance(result.exception, RuleError), result.output
     assert f"{bad}:3:25: error: there is no predicate featurs/5. The nearest are features" in str(
         result.exception
@@ -108,7 +100,7 @@ def test_a_bad_rule_reaches_the_solver_through_no_command(command, place, monkey
 
 def test_a_bad_rule_can_still_be_checked_and_removed():
     bad = kept("rules", "bad", BAD)
-    told = CliRunner().invoke(app, ["rules", "check", str(bad)])
+    told = capar("rules", "check", bad)
     assert (told.exit_code, "unknown" in told.output or "no predicate" in told.output) == (2, True)
     assert run("rules", "remove", "Bad") == f"removed {bad}\n"
     assert run("rules", "list").startswith("core  ")
@@ -138,17 +130,10 @@ def test_rules_beside_the_actionary_name_what_is_observed_and_kept_there():
     assert "known/rules/sip.lp" in run("facts", *thesis, "--actionary", "known")
 
 
-def test_facts_take_the_rules_of_a_folder():
-    sip = kept("mine", "sip", SIP)
-    told = run("facts", DEMO, "--profile", "thesis", "--rules", "mine", "--derive")
-    (line,) = [each for each in told.splitlines() if each.startswith("% Rules: ")]
-    assert line.endswith(f"thesis.lp {sip}")
-
-
 def test_claims_are_judged_with_the_rules_that_count():
     Path("sip.motion.toml").write_text('profile = "thesis"\n' + Path("sip.motion.toml").read_text())
     kept("mine", "sip", SIP)
-    alone = CliRunner().invoke(app, ["test", "sip.motion.toml"])
+    alone = capar("test", "sip.motion.toml")
     assert alone.exit_code == 1 or isinstance(alone.exception, CaparError)
     assert "holds" in run("test", "sip.motion.toml", "--rules", "mine")
 
@@ -174,12 +159,9 @@ def test_a_rule_is_added_beside_the_actionary_that_is_named_and_removed_from_the
     assert "Sip" not in run("rules", "list", *named)
 
 
-def test_a_folder_that_is_none_is_refused():
+def test_a_misspelt_actionary_is_refused_and_not_made():
     with pytest.raises(FileError, match="is no folder of rule files"):
         run("rules", "list", "--rules", "nowhere")
-
-
-def test_a_misspelt_actionary_is_refused_and_not_made():
     for command in (["add", "sip.lp"], ["add", "sip.lp", "--reclassify"]):
         with pytest.raises(FileError, match=r"konwn: is no Actionary\. `capar observe CAPTURE"):
             run("rules", *command, "--actionary", "konwn")
@@ -187,12 +169,6 @@ def test_a_misspelt_actionary_is_refused_and_not_made():
         run("rules", "add", "sip.lp", "--reclassify")
     assert not Path("konwn").exists()
     assert not Path("actionary").exists()
-
-
-def test_a_projects_folder_of_rules_is_made():
-    with pytest.raises(RuleError, match="lacks an Example"):
-        run("rules", "add", "sip.lp", "--rules", "mine", "--profile", "thesis")
-    assert Path("mine").is_dir()
 
 
 def test_a_rule_on_which_another_rests_stays():
@@ -204,13 +180,6 @@ def test_a_rule_on_which_another_rests_stays():
     assert sip.exists()
     run("rules", "remove", "Gulp")
     assert run("rules", "remove", "Sip") == f"removed {sip}\n"
-
-
-def test_a_file_that_is_no_logic_program_can_be_removed():
-    broken = kept(
-        "rules", "broken", 'primitive("Broken").\nfits(S, "Broken" :- segment(S, _, _).\n'
-    )
-    assert run("rules", "remove", "Broken") == f"removed {broken}\n"
 
 
 def test_a_rule_is_drafted_from_a_stored_observation():

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from live_runs import rig_of
 from measured_bodies import pick_and_place
 
-from capar.model.errors import CaptureError, DeviceError, RuleError
+from capar.model.errors import CaptureError, RuleError
 from capar.model.facts import (
     Gap,
     Leans,
@@ -29,7 +29,6 @@ from capar.pipelines.live.frames import (
     Poses,
     body_names,
     body_rows,
-    lead_in,
     replayed,
 )
 from capar.pipelines.live.ledgers import FactLedger, RuleMemory
@@ -103,13 +102,6 @@ def test_where_a_motion_was_highest_is_taken_when_it_has_come_down_and_once() ->
     )
 
 
-def test_a_motion_whose_end_is_told_sooner_than_before_is_settled_once_and_not_lost() -> None:
-    ledger, done = FactLedger(), list[Observed]()
-    for last, frontier in ((60, 54), (55, 54), (54, 60), (54, 70)):
-        done += ledger.settle(ledger.stitched([Moving("box", 10, last)], 0), frontier)
-    assert done == [Moving("box", 10, 54)]
-
-
 def _cut(each: Touching, begin: int, now: int) -> Touching:
     return replace(each, first=max(each.first, begin) - begin, last=min(each.last, now) - begin)
 
@@ -161,11 +153,6 @@ def test_a_frame_of_other_bodies_or_of_an_earlier_time_is_refused() -> None:
         buffer.push(Poses(1.0, np.zeros((2, 3)), np.zeros((2, 4))))
 
 
-def test_a_lead_in_of_half_a_second_is_refused() -> None:
-    with pytest.raises(CaptureError, match="at least 1 s"):
-        lead_in(pick_and_place(), 0.5)
-
-
 def described(*names: str) -> Description:
     return Description("flock", "simulated", names, 100.0)
 
@@ -187,12 +174,6 @@ def test_lost_cycles_of_a_tracker_are_lost_frames_on_an_even_clock() -> None:
     assert frames.filled == 2
     table = next(index for index, name in enumerate(body_names(rig)) if "table" in name)
     assert not any(np.isnan(each.positions[table]).any() for each in got)
-
-
-def test_a_tracker_without_a_moving_body_of_the_rig_is_refused() -> None:
-    rig = pick_and_place()
-    with pytest.raises(DeviceError, match="thing"):
-        DeviceFrames(rig, described("right_hand"), 0.01)
 
 
 def test_who_holds_a_thing_that_has_not_moved_and_touches_another_is_undecided_for_a_while() -> (

@@ -2,17 +2,13 @@
 
 import json
 import re
-from importlib.resources import files
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
+from shell import DEMO, capar, run
 
-from capar.cli import app
 from capar.model.errors import CaparError, UnknownNameError
 
-RUNNER = CliRunner()
-DEMO = str(files("capar") / "demo" / "drink_from_mug")
 EXAMPLE = Path(__file__).parents[1] / "kb" / "lexicon" / "example-18.1.xml"
 
 
@@ -22,12 +18,6 @@ def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("CAPAR_ACTIONARY", raising=False)
     monkeypatch.delenv("CAPAR_RULES", raising=False)
-
-
-def run(*arguments: str) -> str:
-    result = RUNNER.invoke(app, list(arguments), catch_exceptions=False)
-    assert result.exit_code == 0, result.output
-    return result.output
 
 
 def test_describe_tells_the_demo() -> None:
@@ -77,8 +67,7 @@ def test_verbs_fit_a_segment() -> None:
     ],
 )
 def test_a_mistake_is_an_error_of_ours(arguments: tuple[str, ...], error: type[CaparError]) -> None:
-    result = RUNNER.invoke(app, list(arguments))
-    assert isinstance(result.exception, error)
+    assert isinstance(capar(*arguments).exception, error)
 
 
 def test_verbnet_is_imported_once_and_then_answers(tmp_path: Path) -> None:
