@@ -48,8 +48,10 @@ def test_the_final_observation_is_that_of_the_whole_recording_byte_for_byte(name
     assert to_json(run.result) == to_json(run.offline)
 
 
-@pytest.mark.parametrize("name", [*SHORT, *OTHERS])
-@pytest.mark.usefixtures("recordings")
+@pytest.mark.parametrize(
+    "name",
+    [*SHORT, *(pytest.param(each, marks=pytest.mark.usefixtures("recordings")) for each in OTHERS)],
+)
 def test_no_settled_segment_differs_from_the_final_one_and_each_is_told_once(name: str) -> None:
     run = live_run(name)
     told = sorted(content(each.segment) for each in settled(run.events + run.at_the_end))

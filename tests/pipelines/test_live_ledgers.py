@@ -45,7 +45,6 @@ from capar_rules.engine.profiles import profile
 from extractors.calibration import calibrate
 from extractors.devices.tracker import Description, Frame
 from extractors.measure import measure
-from extractors.relations.places import summed
 
 FRAMES = 400
 
@@ -104,16 +103,6 @@ def test_where_a_motion_was_highest_is_taken_when_it_has_come_down_and_once() ->
 
 def _cut(each: Touching, begin: int, now: int) -> Touching:
     return replace(each, first=max(each.first, begin) - begin, last=min(each.last, now) - begin)
-
-
-@given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=60), st.data())
-def test_sums_go_on_from_an_anchor_to_the_last_bit(steps: list[float], data: st.DataObject) -> None:
-    whole = summed(np.array(steps), 0, 0.0)
-    begin = data.draw(st.integers(0, len(steps) - 1))
-    anchor = data.draw(st.integers(begin, len(steps)))
-    part = summed(np.array(steps[begin:]), anchor - begin, float(whole[anchor]))
-    assert (part[anchor - begin :] == whole[anchor:]).all()
-    assert part == pytest.approx(whole[begin:], abs=1e-9)
 
 
 def test_the_memory_of_rules_stays_bounded_however_long_they_are_told_facts() -> None:
