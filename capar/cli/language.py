@@ -8,22 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer import Argument, Option
 
-from capar.cli.options import (
-    Beside,
-    Capture,
-    Corrected,
-    Json,
-    New,
-    OutputFile,
-    Place,
-    ProfileName,
-    Rules,
-    confirm_new,
-    open_words,
-    opened,
-    rule_base,
-    rule_words,
-)
+from capar.cli import options
 from capar.cli.output import answer, check_writable, emit
 from capar.model.errors import CaparError, UnknownNameError
 
@@ -42,14 +27,14 @@ class Detail(StrEnum):
 
 
 def describe(
-    capture: Capture,
+    capture: options.Capture,
     detail: Annotated[Detail, Option(help="Every step, or what changed.")] = Detail.STEPS,
     timed: Annotated[bool, Option("--timed", help="Say when each step was.")] = False,
-    profile: ProfileName = "extended",
-    corrected: Corrected = False,
-    rules: Rules = None,
-    actionary: Beside = None,
-    json: Json = False,
+    profile: options.ProfileName = "extended",
+    corrected: options.Corrected = False,
+    rules: options.Rules = None,
+    actionary: options.Beside = None,
+    json: options.Json = False,
 ) -> None:
     """Say in plain English what was done in a capture."""
     from capar.pipelines.observation import observe
@@ -57,10 +42,10 @@ def describe(
     from kb.language.describe import describe as told
     from kb.language.describe import nouns
 
-    observation = observe(capture, rules=rule_base(profile, rules, actionary))
+    observation = observe(capture, rules=options.rule_base(profile, rules, actionary))
     if corrected:
         observation = _corrected(observation, actionary)
-    words = rule_words(rules, actionary)
+    words = options.rule_words(rules, actionary)
     text = told(observation, detail=detail.value, timed=timed, words=words)
     notices = reservations_on_told(observation)
     told_of = {"capture": observation.capture, "description": text}
@@ -82,9 +67,9 @@ def _corrected(observation: "Observation", actionary: str | None) -> "Observatio
 
 def parse(
     sentence: Annotated[str, Argument(help="Such as: pick up the mug and put it in the box")],
-    actionary: Place = None,
-    rules: Rules = None,
-    json: Json = False,
+    actionary: options.Place = None,
+    rules: options.Rules = None,
+    json: options.Json = False,
 ) -> None:
     """Read instructions, a description, or a question in English.
 
@@ -98,8 +83,8 @@ def parse(
     from kb.language import Question
     from kb.language import parse as read
 
-    words = rule_words(rules, opened(actionary))
-    with open_words(actionary) as store:
+    words = options.rule_words(rules, options.opened(actionary))
+    with options.open_words(actionary) as store:
         value = read(sentence, vocabulary(words, store))
         if isinstance(value, Question):
             _answer_question(value, store, json=json)
@@ -142,10 +127,10 @@ def verb(
         str, Option("--for", help="CAPTURE/END_EFFECTOR/INDEX: verbs of a segment.")
     ] = "",
     kinds: Annotated[bool, Option("--kinds", help="Primitives of it and its kinds.")] = False,
-    actionary: Place = None,
-    rules: Rules = None,
+    actionary: options.Place = None,
+    rules: options.Rules = None,
     most: Annotated[int, Option(help="How many verbs of a segment to show.", min=1)] = 15,
-    json: Json = False,
+    json: options.Json = False,
 ) -> None:
     """Say what is known of a verb, or which verbs fit a segment.
 
@@ -158,12 +143,12 @@ def verb(
     from kb.lexicon.verbs import doubts_of, keys_of_primitives, often, seen_in, summed
     from kb.lexicon.verbs import kinds as kinds_of
 
-    place = opened(actionary)
-    words = rule_words(rules, place)
+    place = options.opened(actionary)
+    words = options.rule_words(rules, place)
     value: Any
-    with open_words(actionary) as store:
+    with options.open_words(actionary) as store:
         if segment:
-            base = rule_base("extended", rules, place)
+            base = options.rule_base("extended", rules, place)
             value = verbs_for(segment, words, store=store, rules=base)[:most]
             lines = _fit_lines(value)
         elif kinds:
@@ -226,13 +211,15 @@ lexicon = typer.Typer(no_args_is_help=True, help="Words in an Actionary: WordNet
 
 
 @lexicon.command()
-def load(actionary: Place = None, rules: Rules = None, new: New = False) -> None:
+def load(
+    actionary: options.Place = None, rules: options.Rules = None, new: options.New = False
+) -> None:
     """Load WordNet's verbs, Levin's classes and primitives' links, once."""
     from kb.actionary import Actionary
     from kb.lexicon.loading import load_words
 
-    confirm_new(actionary, new=new)
-    words = rule_words(rules, opened(actionary))
+    options.confirm_new(actionary, new=new)
+    words = options.rule_words(rules, options.opened(actionary))
     with Actionary.open(actionary) as book:
         loaded = load_words(book.store, words)
     typer.echo("The words are loaded." if loaded else "The words were there already.")
@@ -242,9 +229,9 @@ def load(actionary: Place = None, rules: Rules = None, new: New = False) -> None
 def import_words(
     source: Annotated[str, Argument(help="What to import: verbnet.")],
     folder: Annotated[Path, Argument(help="The folder with VerbNet's XML files.")],
-    actionary: Place = None,
-    new: New = False,
-    json: Json = False,
+    actionary: options.Place = None,
+    new: options.New = False,
+    json: options.Json = False,
 ) -> None:
     """Read VerbNet 3.x from your own copy, in place of an earlier one."""
     from kb.actionary import Actionary
@@ -254,7 +241,7 @@ def import_words(
 
     if source != "verbnet":
         raise UnknownNameError("source of words", source, ("verbnet",))
-    confirm_new(actionary, new=new)
+    options.confirm_new(actionary, new=new)
     classes = read_verbnet(folder)
     keys, resolved = key_rate(classes, wordnet())
     with Actionary.open(actionary) as book:
@@ -299,12 +286,12 @@ class Format(StrEnum):
 
 @reports.command()
 def linguistics(
-    actionary: Place = None,
+    actionary: options.Place = None,
     form: Annotated[Format, Option("--format", help="svg is the drawing alone.")] = Format.TEXT,
-    rules: Rules = None,
-    output: OutputFile = None,
+    rules: options.Rules = None,
+    output: options.OutputFile = None,
     cases: Annotated[Path | None, Option(help="A folder of cases as proof.")] = None,
-    corrected: Corrected = False,
+    corrected: options.Corrected = False,
     json: Annotated[bool, Option("--json", help="The same as --format json.")] = False,
 ) -> None:
     """Report which verbs and verb classes are addressed, with the proof."""
@@ -314,7 +301,7 @@ def linguistics(
 
     if output is not None:
         check_writable(output)
-    files = primitive_files(rule_base("extended", rules, opened(actionary)).added)
-    with open_words(actionary, corrected=corrected) as store:
+    files = primitive_files(options.rule_base("extended", rules, options.opened(actionary)).added)
+    with options.open_words(actionary, corrected=corrected) as store:
         report = report_of(files, store=store, cases=cases_of(files, cases))
     emit(write(report, Format.JSON.value if json else form.value), output)

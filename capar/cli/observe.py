@@ -13,19 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from typer import Argument, Option
 
-from capar.cli.options import (
-    Json,
-    New,
-    Plot,
-    ProfileName,
-    Rules,
-    Set,
-    Steady,
-    Wait,
-    can_ask,
-    confirm_new,
-    rule_base,
-)
+from capar.cli import options
 from capar.cli.output import check_picture, console, save
 from capar.model.errors import CaparError, FileError, RuleError
 
@@ -55,19 +43,19 @@ def observe(
     capture: Annotated[
         str, Argument(help="A capture: its folder, or FOLDER:TAKE. Not with --device.")
     ] = "",
-    profile: ProfileName = "extended",
+    profile: options.ProfileName = "extended",
     name: Annotated[str, Option(help="What the whole action is called.")] = "",
     on_unknown: Annotated[
         OnUnknown | None,
         Option(help="What no rule names: ask (the default at a terminal), keep, or fail."),
     ] = None,
-    rules: Rules = None,
-    steady: Steady = None,
-    set_: Set = None,
-    json: Json = False,
+    rules: options.Rules = None,
+    steady: options.Steady = None,
+    set_: options.Set = None,
+    json: options.Json = False,
     script: Annotated[bool, Option("--script", help="Print the PAR as a Python script.")] = False,
     pars: Annotated[bool, Option("--pars", help="Print all UPARs and IPARs too.")] = False,
-    plot: Plot = None,
+    plot: options.Plot = None,
     actionary: Annotated[
         str | None,
         Option(
@@ -82,8 +70,8 @@ def observe(
             "--fit", help="Fit a human body first, and take its surface for hands, head and feet."
         ),
     ] = False,
-    wait: Wait = 0.0,
-    new: New = False,
+    wait: options.Wait = 0.0,
+    new: options.New = False,
     live: Annotated[
         bool, Option("--live", help="Print segments while they happen, of CAPTURE or --device.")
     ] = False,
@@ -127,7 +115,7 @@ def observe(
     if actionary:
         if Path(actionary).is_file():
             raise FileError(actionary, "is a file; an Actionary is a folder.", "Name a folder.")
-        confirm_new(actionary, new=new)
+        options.confirm_new(actionary, new=new)
     if live or device:
         if plot or set_ or on_unknown or fit:
             raise CaparError(
@@ -136,7 +124,9 @@ def observe(
         source = _Live(
             capture, device, rig, calibration, lead_in, speed, json, name, websocket, lsl_markers
         )
-        observation = _observe_live(source, rule_base(profile, rules, actionary, steady=steady))
+        observation = _observe_live(
+            source, options.rule_base(profile, rules, actionary, steady=steady)
+        )
         stored = _store(observation, actionary, name=name, wait_s=wait)
         if not json:
             typer.echo()
@@ -149,7 +139,7 @@ def observe(
         raise CaparError("expected a CAPTURE, or --live with --device ADDRESS")
     from extractors.readers.bundle.capture_toml import read_capture
 
-    base = rule_base(profile, rules, actionary, steady=steady)
+    base = options.rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
     if fit:
         from capar.body.body_fitting import fit_body, with_body_parts
@@ -164,10 +154,10 @@ def observe(
 
     measurements = measure(trial, set_values(calibrate(trial), set_) if set_ else None)
     observation = observe_measured(trial, measurements, rules=base, name=name)
-    choice = on_unknown or (OnUnknown.ASK if can_ask() and not json else OnUnknown.KEEP)
+    choice = on_unknown or (OnUnknown.ASK if options.can_ask() and not json else OnUnknown.KEEP)
     folder = new_rules_folder(rules, actionary=actionary)
     if choice is OnUnknown.ASK and _ask_for_names(observation, folder):
-        base = rule_base(profile, rules, actionary, steady=steady)
+        base = options.rule_base(profile, rules, actionary, steady=steady)
         observation = observe_measured(trial, measurements, rules=base, name=name)
     elif choice is OnUnknown.FAIL:
         _fail_on_unknown(observation)

@@ -9,19 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 from typer import Argument, Option
 
-from capar.cli.options import (
-    Assume,
-    Capture,
-    Json,
-    NewBundle,
-    Place,
-    Rules,
-    can_ask,
-    has_actionary,
-    opened,
-    require_actionary,
-    rule_words,
-)
+from capar.cli import options
 from capar.cli.output import answer, check_new_folder, print_json
 from capar.model.errors import CaparError
 
@@ -123,7 +111,7 @@ def regenerate(
             "turn_deg, raise_m. Or a CAPTURE in whose scene it is done, as always with --say."
         ),
     ] = None,
-    output: NewBundle = None,
+    output: options.NewBundle = None,
     style: Annotated[
         str,
         Option(
@@ -155,10 +143,10 @@ def regenerate(
     recordings: Annotated[
         Path | None, Option(metavar="FOLDER", help="Where the Actionary's captures are; else here.")
     ] = None,
-    assume: Assume = None,
-    actionary: Place = None,
-    rules: Rules = None,
-    json: Json = False,
+    assume: options.Assume = None,
+    actionary: options.Place = None,
+    rules: options.Rules = None,
+    json: options.Json = False,
 ) -> None:
     """Perform a recorded action on another body, and verify it.
 
@@ -335,9 +323,9 @@ def _words(task: _Task, *, needed: bool) -> "Iterator[Actionary]":
     from kb import Actionary
 
     if needed:
-        require_actionary(task.actionary, observed=True)
-    place = opened(task.actionary)
-    there = needed or has_actionary(place, named=task.actionary)
+        options.require_actionary(task.actionary, observed=True)
+    place = options.opened(task.actionary)
+    there = needed or options.has_actionary(place, named=task.actionary)
     with Actionary.open(place, read_only=True) if there else Actionary.in_memory() as words:
         yield words
 
@@ -406,7 +394,7 @@ def _asker() -> "Callable[[Role, tuple[str, ...]], str] | None":
                 return given
             typer.echo(f"{given!r} does not fit; name one of {listed}.", err=True)
 
-    return ask if can_ask() else None
+    return ask if options.can_ask() else None
 
 
 def _write(
@@ -490,7 +478,7 @@ def _perform_request(task: _Task, text: str) -> None:
     trial = trial_of(stage)
     place = captured_scene(trial)
     human = Human.of(measures_of(trial.agent) if task.agent == SAME else ready_made(task.agent))
-    words = vocabulary(rule_words(task.rules, task.actionary))
+    words = vocabulary(options.rule_words(task.rules, task.actionary))
     known = _recordings(task)
     requests = read_requests(text, words, place, observed_actions(known))
     made: list[Performance] = []
@@ -653,7 +641,7 @@ def _step_lines(stepped: "Approach | None") -> "Iterator[str]":
 
 
 def roundtrip(
-    capture: Capture,
+    capture: options.Capture,
     agents: Annotated[
         str,
         Option(
@@ -664,8 +652,8 @@ def roundtrip(
     ] = "man,woman,child",
     scenes: Annotated[int, Option(min=0, help="Scenes to draw; 0 for the recorded one.")] = 0,
     seed: Annotated[int, Option(min=0, help="Of the drawn scenes.")] = 0,
-    assume: Assume = None,
-    json: Json = False,
+    assume: options.Assume = None,
+    json: options.Json = False,
 ) -> None:
     """Observe, perform on other bodies, observe that, and compare."""
     from capar.pipelines.round_trips import (

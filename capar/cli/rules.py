@@ -9,17 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from typer import Argument, Option
 
-from capar.cli.options import (
-    Json,
-    OutputFile,
-    Place,
-    ProfileName,
-    Rules,
-    has_actionary,
-    opened,
-    require_actionary,
-    rule_base,
-)
+from capar.cli import options
 from capar.cli.output import answer, check_writable, emit, print_json
 
 if TYPE_CHECKING:
@@ -43,16 +33,16 @@ def _others(file: Path, project: Path | None, actionary: str | None) -> tuple[Pa
     """The rule files that people wrote, without this one."""
     from capar_rules.authoring.user_rules import user_rules
 
-    files = user_rules(project, actionary=opened(actionary))
+    files = user_rules(project, actionary=options.opened(actionary))
     return tuple(each for each in files if each.resolve() != file.resolve())
 
 
 @rules.command("list")
 def list_rules(
-    profile: ProfileName = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
-    json: Json = False,
+    profile: options.ProfileName = "extended",
+    rules: options.Rules = None,
+    actionary: options.Place = None,
+    json: options.Json = False,
 ) -> None:
     """List every primitive: its origin, what it specialises, what it is.
 
@@ -61,8 +51,8 @@ def list_rules(
     """
     from capar_rules.authoring.user_primitives import rules_of
 
-    place = opened(actionary)
-    found = rules_of(rule_base(profile, rules, place), actionary=place)
+    place = options.opened(actionary)
+    found = rules_of(options.rule_base(profile, rules, place), actionary=place)
     lines = (
         f"{each.origin}  {each.name}"
         + (f" < {', '.join(each.general)}" if each.general else "")
@@ -75,14 +65,14 @@ def list_rules(
 @rules.command()
 def show(
     name: Annotated[str, Argument(help="A primitive.")],
-    profile: ProfileName = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
+    profile: options.ProfileName = "extended",
+    rules: options.Rules = None,
+    actionary: options.Place = None,
 ) -> None:
     """Print the rule file of a primitive."""
     from capar_rules.authoring.user_primitives import rule_of
 
-    info = rule_of(rule_base(profile, rules, opened(actionary)), name)
+    info = rule_of(options.rule_base(profile, rules, options.opened(actionary)), name)
     typer.echo(Path(info.file).read_text(encoding="utf-8"), nl=False)
 
 
@@ -97,10 +87,10 @@ def new(
     definition: Annotated[str, Option(help="What it is, in words.")] = "",
     general: Annotated[str, Option(help="The primitive that it specialises.")] = "",
     verb: Annotated[str, Option(help="The verb for it.")] = "",
-    output: OutputFile = None,
-    profile: ProfileName = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
+    output: options.OutputFile = None,
+    profile: options.ProfileName = "extended",
+    rules: options.Rules = None,
+    actionary: options.Place = None,
 ) -> None:
     """Write a rule file from a segment or a feature set, to be edited."""
     from capar.model.errors import FileError, RuleError
@@ -115,10 +105,10 @@ def new(
         if output.exists():
             raise FileError(output, "exists already.", "Choose another file.")
         check_writable(output)
-    place = opened(actionary)
-    base = rule_base(profile, rules, place)
+    place = options.opened(actionary)
+    base = options.rule_base(profile, rules, place)
     if source is not None:
-        kept = place if has_actionary(place, named=actionary) else None
+        kept = place if options.has_actionary(place, named=actionary) else None
         text = rule_from_segment(name, source, rules=base, actionary=kept, **words)
     else:
         text = rule_from_features(name, features or "", rules=base, **words)
@@ -130,10 +120,10 @@ def new(
 @rules.command()
 def check(
     file: File,
-    profile: ProfileName = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
-    json: Json = False,
+    profile: options.ProfileName = "extended",
+    rules: options.Rules = None,
+    actionary: options.Place = None,
+    json: options.Json = False,
 ) -> None:
     """Say what is wrong with a rule file; nothing of it is run."""
     from capar_rules.lint.checking import check as checked
@@ -148,7 +138,10 @@ def check(
 
 @rules.command()
 def test(
-    file: File, profile: ProfileName = "extended", rules: Rules = None, actionary: Place = None
+    file: File,
+    profile: options.ProfileName = "extended",
+    rules: options.Rules = None,
+    actionary: options.Place = None,
 ) -> None:
     """Run the examples in a rule file: what it must match, and must not."""
     from capar_rules.authoring.user_primitives import try_rule
@@ -178,9 +171,9 @@ def add(
     ] = None,
     reclassify: Reclassify = False,
     captures: Captures = None,
-    profile: ProfileName = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
+    profile: options.ProfileName = "extended",
+    rules: options.Rules = None,
+    actionary: options.Place = None,
 ) -> None:
     """Add a rule file to your rules.
 
@@ -194,12 +187,12 @@ def add(
 
     folder = new_rules_folder(rules, actionary=actionary)
     if reclassify or actionary:
-        require_actionary(actionary, observed=reclassify)
+        options.require_actionary(actionary, observed=reclassify)
     if rules:
         make_folder(folder)
-    rule_base(profile, rules, opened(actionary))
+    options.rule_base(profile, rules, options.opened(actionary))
     if folder == actionary_rules():
-        require_actionary(actionary)
+        options.require_actionary(actionary)
     make_folder(folder)
     beside = _others(file, rules, actionary)
     stated = (over or (), kind_of or ())
@@ -225,9 +218,9 @@ def remove(
     name: Annotated[str, Argument(help="A primitive of yours.")],
     reclassify: Reclassify = False,
     captures: Captures = None,
-    profile: ProfileName = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
+    profile: options.ProfileName = "extended",
+    rules: options.Rules = None,
+    actionary: options.Place = None,
 ) -> None:
     """Remove a primitive from your rules.
 
@@ -239,7 +232,7 @@ def remove(
     from capar_rules.authoring.user_rules import actionary_rules, rule_files, user_rules
     from capar_rules.lint.checking import admitted_profile
 
-    place = opened(actionary)
+    place = options.opened(actionary)
     mine = actionary_rules(place)
     project = rule_files(rules) if rules or not actionary else ()
     beside = rule_files(mine) if mine and mine.is_dir() and (actionary or not rules) else ()
@@ -247,7 +240,7 @@ def remove(
     path = removable(name, files=(*project, *beside), every=every)
     names = introduced(path)
     if reclassify:
-        require_actionary(actionary, observed=True)
+        options.require_actionary(actionary, observed=True)
         others = tuple(each for each in every if each.resolve() != path.resolve())
         effect = remove_reclassifying(
             path, actionary=actionary, after=admitted_profile(profile, added=others),
@@ -258,7 +251,7 @@ def remove(
         return
     path.unlink()
     typer.echo(f"removed {path}")
-    count = bearing(actionary, names) if has_actionary(place, named=actionary) else 0
+    count = bearing(actionary, names) if options.has_actionary(place, named=actionary) else 0
     if count:
         typer.echo(
             f"stored segments that still bear the name {' or '.join(names)}: {count}; observe "
@@ -273,10 +266,10 @@ def diff(
     on: Annotated[
         list[str] | None, Option(help="A capture, instead of the Actionary; may be repeated.")
     ] = None,
-    profile: ProfileName = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
-    json: Json = False,
+    profile: options.ProfileName = "extended",
+    rules: options.Rules = None,
+    actionary: options.Place = None,
+    json: options.Json = False,
 ) -> None:
     """Show which segments would change their name if a file were added.
 
@@ -286,7 +279,7 @@ def diff(
     from capar_rules.lint.checking import admitted_profile, require
     from capar_rules.lint.checking import check as checked
 
-    before = rule_base(profile, rules, opened(actionary))
+    before = options.rule_base(profile, rules, options.opened(actionary))
     beside = _others(file, rules, actionary)
     findings = checked(file, profile=profile, beside=beside)
     require(file, [each for each in findings if each.code != "ambiguous"])
@@ -305,15 +298,15 @@ def diff(
 
 @rules.command()
 def audit(
-    profile: ProfileName = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
-    json: Json = False,
+    profile: options.ProfileName = "extended",
+    rules: options.Rules = None,
+    actionary: options.Place = None,
+    json: options.Json = False,
 ) -> None:
     """Audit the whole rule base over every possible segment."""
     from capar_rules.lint.world_checks import audit as audited
 
-    found = audited(rule_base(profile, rules, opened(actionary)))
+    found = audited(options.rule_base(profile, rules, options.opened(actionary)))
     answer({**asdict(found), "clean": found.clean}, _audit_lines(found), json=json)
     if not found.clean:
         raise typer.Exit(1)
@@ -322,10 +315,10 @@ def audit(
 @rules.command("words")
 def list_words(
     name: Annotated[str | None, Argument(help="One word, such as carried_off.")] = None,
-    profile: ProfileName = "extended",
-    rules: Rules = None,
-    actionary: Place = None,
-    json: Json = False,
+    profile: options.ProfileName = "extended",
+    rules: options.Rules = None,
+    actionary: options.Place = None,
+    json: options.Json = False,
 ) -> None:
     """Explain the words of rules: what a rule file may read or state.
 
@@ -333,7 +326,7 @@ def list_words(
     """
     from capar_rules.authoring.glossary import glossary
 
-    found = glossary(rule_base(profile, rules, opened(actionary)))
+    found = glossary(options.rule_base(profile, rules, options.opened(actionary)))
     rows = [
         {
             "name": word.name,

@@ -8,16 +8,7 @@ from typing import Annotated
 import typer
 from typer import Argument, Option
 
-from capar.cli.options import (
-    Json,
-    New,
-    Place,
-    Wait,
-    confirm_new,
-    has_actionary,
-    opened,
-    require_actionary,
-)
+from capar.cli import options
 from capar.cli.output import answer, check_new_folder, check_writable, emit, save
 from capar.model.errors import CaparError, FileError, UnknownNameError
 
@@ -25,9 +16,9 @@ from capar.model.errors import CaparError, FileError, UnknownNameError
 def import_(
     file: Annotated[str, Argument(help="The file, or - for standard input.")],
     format_: Annotated[str | None, Option("--format", help="turtle, trig, nquads, jsonld.")] = None,
-    wait: Wait = 0.0,
-    new: New = False,
-    actionary: Place = None,
+    wait: options.Wait = 0.0,
+    new: options.New = False,
+    actionary: options.Place = None,
 ) -> None:
     """Import Turtle, TriG, N-Quads or JSON-LD.
 
@@ -38,7 +29,7 @@ def import_(
     from kb.exchange import bring_in, format_of, read
 
     chosen = format_of(file, format_)
-    confirm_new(actionary, new=new)
+    options.confirm_new(actionary, new=new)
     quads = read(_bytes(file), chosen, path=file)
     with Actionary.open(actionary, wait_s=wait) as opened:
         statements, observations = bring_in(opened.store, quads, source=file)
@@ -73,7 +64,7 @@ def export(
     ] = None,
     observation: Annotated[str | None, Option(help="Only this one, with what it mentions.")] = None,
     soma: Annotated[bool, Option("--soma", help="An episode in terms of SOMA and DUL.")] = False,
-    actionary: Place = None,
+    actionary: options.Place = None,
 ) -> None:
     """Export the Actionary or an observation as RDF, or a plan.
 
@@ -137,10 +128,10 @@ def _export_plan(name: str, format_: str, output: Path | None, actionary: str | 
         raise CaparError("PDDL is two files, a domain and a problem; name a folder by --output")
     if output is not None:
         (check_new_folder if folder else check_writable)(output)
-    place = opened(actionary)
+    place = options.opened(actionary)
     if Path(name).exists() or Path(name.rpartition(":")[0] or name).exists():
         source = observed_plan(name)
-    elif has_actionary(place, named=actionary):
+    elif options.has_actionary(place, named=actionary):
         with Actionary.open(place, read_only=True) as words:
             source = stored_plan(words, name)
     else:
@@ -161,8 +152,8 @@ def _export_plan(name: str, format_: str, output: Path | None, actionary: str | 
 
 def backup(
     file: Annotated[Path | None, Argument(help="Where to; else beside the Actionary.")] = None,
-    json: Json = False,
-    actionary: Place = None,
+    json: options.Json = False,
+    actionary: options.Place = None,
 ) -> None:
     """Write all that the Actionary holds to a file, and its rules.
 
@@ -174,8 +165,8 @@ def backup(
     from kb.exchange import back_up, back_up_rules
     from kb.store.stores import is_address
 
-    require_actionary(actionary, observed=True)
-    place = opened(actionary)
+    options.require_actionary(actionary, observed=True)
+    place = options.opened(actionary)
     if file is None and is_address(place):
         raise FileError(place, "is a server.", "Say where its backup goes: capar backup FILE.nq")
     folder, now = Path(place).absolute(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")

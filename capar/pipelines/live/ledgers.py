@@ -3,10 +3,9 @@
 from bisect import bisect_left
 from collections import defaultdict, deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
 from functools import cache
-from inspect import get_annotations
 from types import MappingProxyType
 from typing import Any, cast
 
@@ -246,7 +245,7 @@ def _key(fact: Observed) -> Key:
 @cache
 def _layout(kind: type[Observed]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The fields of a kind of fact that hold text, and those that hold frames."""
-    known = get_annotations(kind)
+    known = {each.name: each.type for each in fields(cast(Any, kind))}
     frames = () if kind.declaration.span is Span.ALWAYS else ("frame", "first", "last")
     texts = tuple(name for name, of in known.items() if of is str)
     return texts, tuple(name for name in known if name in frames)
