@@ -28,7 +28,7 @@ def check_file(path: Path) -> None:
     """
     try:
         if not path.exists():
-            raise FileError(path, "no such file.", _neighbours(path))
+            raise FileError(path, "no such file.", neighbours(path))
         if not path.is_file():
             raise FileError(path, "is a folder or a device, not a file.", "Name a file in it.")
         if path.stat().st_size == 0:
@@ -37,7 +37,8 @@ def check_file(path: Path) -> None:
         raise FileError(str(path), f"cannot be opened: {error}.") from error
 
 
-def _neighbours(path: Path) -> str:
+def neighbours(path: Path) -> str:
+    """What the folder of a missing file holds."""
     if not path.parent.is_dir():
         return f"There is no folder {path.parent} either."
     names = sorted(each.name for each in path.parent.iterdir())

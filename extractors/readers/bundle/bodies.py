@@ -7,7 +7,7 @@ from functools import partial
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
@@ -75,60 +75,42 @@ def arrangement(body: str, markers: Mapping[str, Float[np.ndarray, "frames 3"]])
 
 
 def fit_cluster(cluster: Cluster, points: Float[np.ndarray, "frames markers 3"]) -> Fit:
-    """The pose of a cluster in every frame in which three of its markers are seen."""
+    """The pose of a cluster in every frame in which three of its markers are seen.
+
+    They are least squares over many frames at once (Kabsch).
+    """
     frames = len(points)
     fit = Fit(np.full((frames, 3), np.nan), np.full((frames, 4), np.nan), np.full(frames, np.nan))
-    seen = ~np.isnan(points).any(axis=2)
-    patterns, which = np.unique(seen, axis=0, return_inverse=True)
-    for index, pattern in enumerate(patterns):
-        rows = np.flatnonzero(which.reshape(-1) == index)
-        if _fixes(cluster.local, pattern):
-            _fit_rows(cluster.local[pattern], points[rows][:, pattern], rows, fit)
+    patterns, which = np.unique(~np.isnan(points).any(axis=2), axis=0, return_inverse=True)
+    for index, seen in enumerate(patterns):
+        rows, local = np.flatnonzero(which.reshape(-1) == index), cluster.local[seen]
+        if len(local) < 3:
+            continue
+        world, centre = points[rows][:, seen], local.mean(axis=0)
+        if np.linalg.svd(local - centre, compute_uv=False)[1] < FLAT_M:
+            continue  # a rotation is left open
+        middle = world.mean(axis=1)
+        u, _, vt = np.linalg.svd(np.einsum("fmi,mj->fij", world - middle[:, None], local - centre))
+        u[:, :, 2] *= np.where(np.linalg.det(u @ vt) < 0.0, -1.0, 1.0)[:, None]
+        matrices = u @ vt
+        placed = np.einsum("fij,mj->fmi", matrices, local - centre) + middle[:, None]
+        fit.positions[rows] = middle - matrices @ centre
+        fit.orientations[rows] = geometry.quaternions(Rotation.from_matrix(matrices))
+        fit.residuals[rows] = np.sqrt(((placed - world) ** 2).sum(axis=2).mean(axis=1))
     return fit
 
 
-def _fixes(local: Float[np.ndarray, "markers 3"], seen: Bool[np.ndarray, "markers"]) -> bool:
-    """Whether the seen markers leave no rotation open."""
-    if seen.sum() < 3:
-        return False
-    spread = local[seen] - local[seen].mean(axis=0)
-    return bool(np.linalg.svd(spread, compute_uv=False)[1] >= FLAT_M)
-
-
-def _fit_rows(
-    local: Float[np.ndarray, "markers 3"],
-    world: Float[np.ndarray, "frames markers 3"],
-    rows: np.ndarray,
-    fit: Fit,
-) -> None:
-    """Least squares over many frames at once (Kabsch), written into the fit."""
-    centre, middle = local.mean(axis=0), world.mean(axis=1)
-    u, _, vt = np.linalg.svd(np.einsum("fmi,mj->fij", world - middle[:, None], local - centre))
-    sign = np.linalg.det(u @ vt)
-    u[:, :, 2] *= np.where(sign < 0.0, -1.0, 1.0)[:, None]
-    matrices = u @ vt
-    placed = np.einsum("fij,mj->fmi", matrices, local - centre) + middle[:, None]
-    fit.positions[rows] = middle - matrices @ centre
-    fit.orientations[rows] = geometry.quaternions(Rotation.from_matrix(matrices))
-    fit.residuals[rows] = np.sqrt(((placed - world) ** 2).sum(axis=2).mean(axis=1))
-
-
-def check_fit(
+def _check_fit(
     body: str,
     cluster: Cluster,
     points: Float[np.ndarray, "frames markers 3"],
     fit: Fit,
-    *,
     limit_m: float,
 ) -> None:
-    """Check that the markers keep their arrangement.
-
-    Raises:
-        CaptureError: They do not, or only in a mirror.
-    """
-    rest = float(np.nanmedian(fit.residuals)) if (~np.isnan(fit.residuals)).any() else np.nan
-    if np.isnan(rest):
+    """Check that the markers keep their arrangement, and not only in a mirror."""
+    if np.isnan(fit.residuals).all():
         raise CaptureError(f"body {body!r}: three of its markers are never seen at once")
+    rest = float(np.nanmedian(fit.residuals))
     if rest <= limit_m:
         return
     other = fit_cluster(Cluster(cluster.names, cluster.local * [-1.0, 1.0, 1.0]), points)
@@ -165,9 +147,9 @@ class WorldRecording:
     """Place on the body of joints and markers, where the capture states it."""
 
     @property
-    def mirrored(self) -> bool:
-        """Whether the file's world is left-handed, so that shapes made for it must be mirrored."""
-        return self.conventions.left_handed
+    def times(self) -> Float[np.ndarray, "frames"]:
+        """The clock of the file's frames [s]: the markers', else that of the first body."""
+        return self.marker_times if self.markers else next(iter(self.bodies.values())).times
 
 
 def to_world(recording: Recording, *, unit_m: float, up: str, left_handed: bool) -> WorldRecording:
@@ -177,52 +159,34 @@ def to_world(recording: Recording, *, unit_m: float, up: str, left_handed: bool)
         CaptureError: The recording then spans what no room spans: a wrong unit.
     """
     turn = upward(up)
-    bodies = {
-        name: _moved(each, unit_m, turn, left_handed) for name, each in recording.bodies.items()
-    }
-    markers = {
-        name: turn.apply(mirrored(each * unit_m) if left_handed else each * unit_m)
-        for name, each in recording.markers.items()
-    }
-    check_span(recording.source.path, bodies, markers, unit_m)
+
+    def placed(points: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames 3"]:
+        return turn.apply(mirrored(points * unit_m) if left_handed else points * unit_m)
+
+    bodies = {}
+    for name, stream in recording.bodies.items():
+        known, turned = ~stream.lost, np.full_like(stream.orientations, np.nan)
+        if known.any():
+            own = stream.orientations[known] * ([1.0, 1.0, -1.0, -1.0] if left_handed else 1.0)
+            turned[known] = geometry.quaternions(turn * geometry.rotations(own))
+        bodies[name] = Stream(stream.times, placed(stream.positions), turned)
+    markers = {name: placed(each) for name, each in recording.markers.items()}
+    every = [each.positions for each in bodies.values()] + list(markers.values())
+    _check_span(recording.source.path, every, unit_m)
+    order = order_notices(recording.bodies, recording.orders, unit_m, Thresholds())
     return WorldRecording(
         source=recording.source,
         bodies=bodies,
         markers=markers,
         marker_times=recording.marker_times,
         parents=recording.parents,
-        notices=(
-            *recording.notices,
-            *order_notices(recording.bodies, recording.orders, unit_m, Thresholds()),
-        ),
+        notices=(*recording.notices, *order),
         conventions=Conventions(unit_m, up, left_handed),
     )
 
 
-def _moved(stream: Stream, unit_m: float, turn: Rotation, left_handed: bool) -> Stream:
-    positions, orientations = stream.positions * unit_m, stream.orientations
-    if left_handed:
-        positions = mirrored(positions)
-        orientations = orientations * np.array([1.0, 1.0, -1.0, -1.0])
-    known = ~stream.lost
-    turned = np.full_like(orientations, np.nan)
-    if known.any():
-        turned[known] = geometry.quaternions(turn * geometry.rotations(orientations[known]))
-    return Stream(times=stream.times, positions=turn.apply(positions), orientations=turned)
-
-
-def check_span(
-    path: str,
-    bodies: Mapping[str, Stream],
-    markers: Mapping[str, Float[np.ndarray, "frames 3"]],
-    unit_m: float,
-) -> None:
-    """Check that a recording is of the size of people.
-
-    Raises:
-        CaptureError: It is not; the message names the unit that would make it so.
-    """
-    every = [each.positions for each in bodies.values()] + list(markers.values())
+def _check_span(path: str, every: list[Float[np.ndarray, "frames 3"]], unit_m: float) -> None:
+    """Check that a recording is of the size of people; else name the unit that would make it so."""
     points = np.concatenate(every)
     points = points[~np.isnan(points).any(axis=1)]
     if not len(points):
@@ -249,7 +213,7 @@ class Body:
 
     stream: Stream
     frame: Frame
-    notices: tuple[Notice, ...] = field(default=())
+    notices: tuple[Notice, ...] = ()
     conventions: Conventions = field(default=Conventions())
     """Those of its file."""
 
@@ -268,8 +232,8 @@ def find_body(entry: Tracked, files: Files) -> Body:
         return _carried(entry, files, entry.body or [], offset)
     file = _file_of(entry, files, "body", entry.body)
     recording = files[file]
-    stream = offset_by(recording.bodies[entry.body], offset)
-    frame = skeleton_frame(recording, entry.body, stream)
+    stream = _offset_by(recording.bodies[entry.body], offset)
+    frame = _skeleton_frame(recording, entry.body, stream)
     return Body(stream, frame, conventions=recording.conventions)
 
 
@@ -290,14 +254,15 @@ def _carried(entry: Tracked, files: Files, patterns: list[str], offset: RigidTra
             raise entry.error("body", f"{first!r} and {second!r} are recorded at the same time.")
     parts = [streams[each] for each in order]
     whole = Stream(
-        np.concatenate([each.times for each in parts]),
-        np.concatenate([each.positions for each in parts]),
-        np.concatenate([each.orientations for each in parts]),
+        *(
+            np.concatenate([getattr(each, name) for each in parts])
+            for name in ("times", "positions", "orientations")
+        )
     )
-    return Body(offset_by(whole, offset), Frame(), conventions=sources[0].conventions)
+    return Body(_offset_by(whole, offset), Frame(), conventions=sources[0].conventions)
 
 
-def offset_by(stream: Stream, offset: RigidTransform) -> Stream:
+def _offset_by(stream: Stream, offset: RigidTransform) -> Stream:
     """``T_world_body * T_body_sensor`` in every frame."""
     known = ~stream.lost
     positions = np.full_like(stream.positions, np.nan)
@@ -337,19 +302,19 @@ def _from_markers(entry: Tracked, files: Files, names: list[str], offset: RigidT
     try:
         cluster = _stated(entry, names) or _own_frame(entry, arrangement(label, markers))
         fit = fit_cluster(cluster, points)
-        check_fit(label, cluster, points, fit, limit_m=entry.residual_m)
+        _check_fit(label, cluster, points, fit, entry.residual_m)
     except CaptureError as error:
         raise CaptureError(f"{entry.where('markers')}: {error}") from error
     wild = fit.residuals > 3.0 * entry.residual_m
     positions = np.where(wild[:, None], np.nan, fit.positions)
-    stream = offset_by(Stream(recording.marker_times, positions, fit.orientations), offset)
+    stream = _offset_by(Stream(recording.marker_times, positions, fit.orientations), offset)
     places = offset.inv().apply(cluster.local)
     own = dict(zip(names, places, strict=True))
     frame = Frame(
         names=(*recording.bodies, *recording.markers),
         place=partial(_mean_place, recording, stream, own),
         markers=tuple(names),
-        mirrored=recording.mirrored,
+        mirrored=recording.conventions.left_handed,
     )
     wrong = notice("markers-not-rigid", label, frames=int(wild.sum()))
     return Body(stream, frame, (wrong,) if wild.any() else (), recording.conventions)
@@ -371,64 +336,45 @@ def _own_frame(entry: Tracked, cluster: Cluster) -> Cluster:
     Of two axes from pairs of markers the first is kept, the second is made square to it.
     """
     places = dict(zip(cluster.names, cluster.local, strict=True))
-
-    def place(key: str, name: str) -> Float[np.ndarray, "3"]:
-        if name not in places:
-            raise entry.unknown("marker", name, places, key)
-        return places[name]
-
-    origin = [place("origin", name) for name in entry.origin]
-    centre = np.mean(origin, axis=0) if origin else np.zeros(3)
+    ends = [name for pair in (entry.axes or {}).values() for name in pair]
+    for key, names in (("origin", entry.origin), ("axes", ends)):
+        for name in names:
+            if name not in places:
+                raise entry.unknown("marker", name, places, key)
+    centre = np.mean([places[name] for name in entry.origin] or [np.zeros(3)], axis=0)
     turn = Rotation.identity()
     if entry.axes:
-        along, units = [], []
-        for axis, (start, end) in entry.axes.items():
-            along.append(place("axes", end) - place("axes", start))
-            units.append(np.eye(3)["xyz".index(axis)])
-        stated = np.stack([each / np.linalg.norm(each) for each in along])
-        turn, _ = Rotation.align_vectors(stated, np.stack(units), weights=[np.inf, 1.0])
+        along = np.stack([places[end] - places[start] for start, end in entry.axes.values()])
+        along /= np.linalg.norm(along, axis=1, keepdims=True)
+        units = np.eye(3)[["xyz".index(axis) for axis in entry.axes]]
+        turn, _ = Rotation.align_vectors(along, units, weights=[np.inf, 1.0])
     return Cluster(cluster.names, turn.inv().apply(cluster.local - centre))
 
 
-def skeleton_frame(recording: WorldRecording, name: str, stream: Stream) -> Frame:
+def _skeleton_frame(recording: WorldRecording, name: str, stream: Stream) -> Frame:
     """Where the file's other bodies and markers lie in a body's frame, in the mean."""
-    below = [each for each in recording.parents if _is_below(recording.parents, each, name)]
-    bones = {
-        "children": tuple(("", each) for each in below if recording.parents[each] == name),
-        "descendants": tuple(
-            ("" if recording.parents[each] == name else recording.parents[each], each)
-            for each in below
-        ),
-    }
+    parents, below = recording.parents, {name}
+    while more := {each for each, above in parents.items() if above in below} - below:
+        below |= more
+    bones = [("" if above == name else above, n) for n, above in parents.items() if above in below]
+
+    def lengths(first: str, second: str) -> tuple[float, float]:
+        one, two = recording.bodies[first or name], recording.bodies[second or name]
+        if len(one.times) != len(two.times):
+            return 0.0, 0.0
+        found = np.linalg.norm(one.positions - two.positions, axis=1)
+        known = found[~np.isnan(found)]
+        shortest, longest = np.quantile(known, [0.05, 0.95]) if known.size else (0.0, 0.0)
+        return float(shortest), float(longest)
+
     return Frame(
         names=(*recording.bodies, *recording.markers),
         place=partial(_mean_place, recording, stream, {}),
-        bones=bones,
+        bones={"children": [bone for bone in bones if not bone[0]], "descendants": bones},
         joint=name,
-        lengths=lambda first, second: _lengths(recording, first or name, second or name),
-        mirrored=recording.mirrored,
+        lengths=lengths,
+        mirrored=recording.conventions.left_handed,
     )
-
-
-def _lengths(recording: WorldRecording, first: str, second: str) -> tuple[float, float]:
-    """The distance of two joints [m] that it has, or has not, in a twentieth of all frames."""
-    one, two = recording.bodies[first], recording.bodies[second]
-    if len(one.times) != len(two.times):
-        return 0.0, 0.0
-    lengths = np.linalg.norm(one.positions - two.positions, axis=1)
-    known = lengths[~np.isnan(lengths)]
-    shortest, longest = np.quantile(known, [0.05, 0.95]) if known.size else (0.0, 0.0)
-    return float(shortest), float(longest)
-
-
-def _is_below(parents: Mapping[str, str], name: str, root: str) -> bool:
-    seen = set()
-    while name in parents and name not in seen:
-        seen.add(name)
-        name = parents[name]
-        if name == root:
-            return True
-    return False
 
 
 def _mean_place(
@@ -475,27 +421,19 @@ def resampled(
         return Stream(times, stream.positions, stream.orientations)  # what is lost stays so
     source = stream.times[known]
     wanted = np.clip(times, source[0], source[-1]) if extend == "rest" else times
-    near = _near(source, wanted, stream.times)
+    # near is a wanted time at a known sample, or between two that are near each other
+    reach = max(GAP_S, GAP_STEPS * float(np.median(np.diff(stream.times))))
+    after = np.clip(np.searchsorted(source, wanted), 0, len(source) - 1)
+    before = np.clip(after - 1, 0, len(source) - 1)
+    exact = np.minimum(np.abs(wanted - source[before]), np.abs(source[after] - wanted)) < SAME_S
+    within = (wanted >= source[0]) & (wanted <= source[-1])
+    near = exact | (within & (source[after] - source[before] <= reach + SAME_S))
     positions = np.full((len(times), 3), np.nan)
     orientations = np.full((len(times), 4), np.nan)
     inside = np.clip(wanted[near], source[0], source[-1])
     positions[near] = _positions(source, stream.positions[known], inside)
     orientations[near] = geometry.slerp(source, stream.orientations[known], inside)
     return Stream(times=times, positions=positions, orientations=orientations)
-
-
-def _near(
-    source: Float[np.ndarray, "known"],
-    wanted: Float[np.ndarray, "frames"],
-    clock: Float[np.ndarray, "samples"],
-) -> Bool[np.ndarray, "frames"]:
-    """Where a wanted time has a known sample at itself, or lies between two near ones."""
-    reach = max(GAP_S, GAP_STEPS * float(np.median(np.diff(clock))))
-    after = np.clip(np.searchsorted(source, wanted), 0, len(source) - 1)
-    before = np.clip(after - 1, 0, len(source) - 1)
-    exact = np.minimum(np.abs(wanted - source[before]), np.abs(source[after] - wanted)) < SAME_S
-    inside = (wanted >= source[0]) & (wanted <= source[-1])
-    return exact | (inside & (source[after] - source[before] <= reach + SAME_S))
 
 
 def _positions(
@@ -512,10 +450,9 @@ def _positions(
     step = max(GAP_S, GAP_STEPS * float(np.median(np.diff(source))))
     breaks = np.flatnonzero(np.diff(source) > step) + 1
     for run in np.split(np.arange(len(source)), breaks):
-        if len(run) < 4:
-            continue
-        within = (wanted >= source[run[0]]) & (wanted <= source[run[-1]])
-        out[within] = CubicSpline(source[run], positions[run])(wanted[within])
+        if len(run) >= 4:
+            within = (wanted >= source[run[0]]) & (wanted <= source[run[-1]])
+            out[within] = CubicSpline(source[run], positions[run])(wanted[within])
     return out
 
 
@@ -544,8 +481,13 @@ def shared_clock(
     begin = first + (span_s[0] or 0.0)
     end = last if span_s[1] is None else min(last, first + span_s[1])
     if rate_hz is not None:
-        count = _count(begin, end, rate_hz, where)
-        return np.arange(count) / rate_hz, begin
+        frames = (end - begin) * rate_hz
+        if not 1.0 <= frames <= LARGEST_FRAMES:
+            raise CaptureError(
+                f"{where}: {end - begin:g} s at rate_hz = {rate_hz:g} make {frames:.0f} frames; "
+                f"between 2 and {LARGEST_FRAMES:.0e} are possible"
+            )
+        return np.arange(int(np.floor(frames + 1e-6)) + 1) / rate_hz, begin
     clock = streams[0].times
     for stream in streams:
         if len(stream.times) != len(clock) or np.abs(stream.times - clock).max() > SAME_S:
@@ -566,13 +508,3 @@ def rate_notices(streams: Sequence[Stream], rate_hz: float | None) -> list[Notic
         return []
     recorded = f"{min(rates):.4g}" + (f" to {max(rates):.4g}" if max(rates) > min(rates) else "")
     return [notice("rate-mistyped", stated_hz=rate_hz, recorded_hz=recorded)]
-
-
-def _count(begin: float, end: float, rate_hz: float, where: str) -> int:
-    frames = (end - begin) * rate_hz
-    if not 1.0 <= frames <= LARGEST_FRAMES:
-        raise CaptureError(
-            f"{where}: {end - begin:g} s at rate_hz = {rate_hz:g} make {frames:.0f} frames; "
-            f"between 2 and {LARGEST_FRAMES:.0e} are possible"
-        )
-    return int(np.floor(frames + 1e-6)) + 1

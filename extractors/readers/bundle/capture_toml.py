@@ -1,6 +1,6 @@
 """The capture bundle: a capture.toml that says what is what in the files it names."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
@@ -15,14 +15,13 @@ from capar.model.capture import (
     UNITS,
     Agent,
     Capture,
-    Conventions,
     Notice,
     PivotContact,
     Purpose,
     Role,
     Sensor,
+    Shape,
     ShapeSource,
-    Source,
     Stream,
     TagObject,
     TagType,
@@ -40,7 +39,7 @@ from extractors.readers.bundle.bodies import (
     shared_clock,
     to_world,
 )
-from extractors.readers.bundle.shapes import Frame, build_shape, under_object
+from extractors.readers.bundle.shapes import Frame, WorldPose, build_shape, under_object
 from extractors.readers.files import source_of
 from extractors.readers.names import (
     WHOLES,
@@ -82,10 +81,9 @@ def find_place(place: str | Path) -> tuple[Path, str]:
     if not path.exists() and ":" in text:
         stem, _, take = text.rpartition(":")
         path = Path(stem)
-    if path.is_dir():
-        path = path / FILE
-    elif path.is_file() and path.suffix != ".toml":
-        beside = path.parent / FILE
+    path = path / FILE if path.is_dir() else path
+    beside = path.parent / FILE
+    if path.is_file() and path.suffix != ".toml":
         if not beside.is_file():
             raise FileError(
                 text,
@@ -94,8 +92,7 @@ def find_place(place: str | Path) -> tuple[Path, str]:
             )
         path = beside
     if not path.is_file():
-        folder = path.parent if path.suffix else path
-        wanted = path if path.suffix == ".toml" else folder / FILE
+        wanted = {".toml": path, "": path / FILE}.get(path.suffix, beside)
         raise FileError(
             text,
             f"no capture here: there is no file {path}.",
@@ -115,9 +112,7 @@ def take_words(place: str | Path) -> dict[str, dict[str, str]]:
 
 
 def _takes(data: dict[str, Any], location: Location) -> dict[str, dict[str, str]]:
-    if "takes" not in data:
-        return {}
-    found = validated(Takes, {"takes": data["takes"]}, location).takes
+    found = validated(Takes, {"takes": data.get("takes", [])}, location).takes
     words = [{"take": take} if isinstance(take, str) else take for take in found]
     return {take["take"]: take for take in words}
 
@@ -141,6 +136,59 @@ def open_bundle(place: str | Path) -> tuple[CaptureFile, str]:
     return validated(CaptureFile, substituted(data, known.get(take, {})), location), take
 
 
+@dataclass(frozen=True)
+class _Bundle:
+    """A capture.toml with what its files hold of its sensors and objects."""
+
+    document: CaptureFile
+    take: str
+    files: Files
+    sensors: Sequence[SensorEntry]
+    objects: Sequence[ObjectEntry]
+    bodies: Mapping[str, Body]
+    """By the name of the sensor or object."""
+
+    times: Times
+    """The capture's clock [s]."""
+
+    start_s: float
+    """The files' time that is its zero [s]."""
+
+    pivots: tuple[PivotContact, ...]
+    """Those that many objects declared at once share."""
+
+    notices: tuple[Notice, ...]
+
+
+def _read_bundle(place: str | Path) -> _Bundle:
+    document, take = open_bundle(place)
+    _check_names(document)
+    files = read_files(document)
+    many = [(entry, *many_objects(entry, files)) for entry in document.objects_from]
+    sensors = [*document.sensor]
+    sensors += [each for entry in document.sensors_from for each in _many_sensors(entry, files)]
+    objects = [*document.object, *(each for _, found, _ in many for each in found)]
+    entries: list[SensorEntry | ObjectEntry] = [*sensors, *objects]
+    bodies = {each.name: find_body(each, files) for each in entries if each.body or each.markers}
+    streams = [body.stream for body in bodies.values()]
+    span_s = document.from_s, document.to_s
+    times, start_s = shared_clock(
+        streams, rate_hz=document.rate_hz, span_s=span_s, where=document.where()
+    )
+    pivots = tuple(
+        PivotContact(entry.touched_by, each.name, entry.touched_within_m)
+        for entry, found, _ in many
+        if entry.touched_within_m is not None
+        for each in found
+    )
+    notices = (
+        *(notice for body in bodies.values() for notice in body.notices),
+        *(notice for _, _, left_out in many for notice in left_out),
+        *rate_notices(streams, document.rate_hz),
+    )
+    return _Bundle(document, take, files, sensors, objects, bodies, times, start_s, pivots, notices)
+
+
 def read_capture(place: str | Path) -> Capture:
     """The capture that a bundle describes.
 
@@ -151,46 +199,61 @@ def read_capture(place: str | Path) -> Capture:
     Raises:
         CaparError: A file, body or value is not as the capture.toml says; it names the line.
     """
-    document, take = open_bundle(place)
-    _check_names(document)
-    files = read_files(document)
-    group = _declared(document, files)
+    bundle = _read_bundle(place)
+    document, files, bodies = bundle.document, bundle.files, bundle.bodies
     agents = [Agent(each.name, each.kind, each.measures) for each in document.performers]
-    contact = document.contact
-    folder = document.file_path.parent
-    name = document.name or folder.name.strip(".") or folder.resolve().name
-    own = source_of(document.file_path, "capture.toml", recorded_at=document.recorded or "")
-    own = replace(own, path=document.file_path.name)
+    contact, file = document.contact, document.location.file
+    name = document.name or file.parent.name.strip(".") or file.parent.resolve().name
+    own = source_of(file, "capture.toml", recorded_at=document.recorded or "")
+    frames, shapes = [], {}
+    entries: list[SensorEntry | ObjectEntry] = [*bundle.sensors, *bundle.objects]
+    for entry in entries:
+        frame = bodies[entry.name].frame if entry.name in bodies else Frame()
+        frame.owner = entry.name
+        frames.append(frame)
+        shapes[entry.name] = build_shape(entry.shape, frame) if entry.shape else None
+    sensors = [_sensor(each, _stream(each, bundle), shapes[each.name]) for each in bundle.sensors]
+    objects = _objects(bundle, shapes)
+    streams = {each.name: each.stream for each in sensors}
+    streams |= {each.name: each.stream for each in objects}
+    for pivot in document.pivot_contact:
+        for key, body in (("first", pivot.first), ("second", pivot.second)):
+            if body not in streams:
+                raise pivot.unknown("body", body, streams, key)
+    pivots = (PivotContact(p.first, p.second, p.distance_m) for p in document.pivot_contact)
+    meshes = dict.fromkeys(source for frame in frames for source in frame.sources)
     try:
         trial = Capture(
-            name=f"{name}_{take}" if take and take not in name else name,
-            sensors=group.sensors,
-            objects=group.objects,
+            name=f"{name}_{bundle.take}" if bundle.take and bundle.take not in name else name,
+            sensors=tuple(sensors),
+            objects=tuple(objects),
             agent=agents[0],
             contact_tolerance_m=contact.tolerance_m if contact else None,
             contact_dropout_s=contact.dropout_s if contact else None,
             contact_minimum_s=contact.minimum_s if contact else None,
-            pivot_contacts=(*_pivots(document, group), *group.pivot_contacts),
+            pivot_contacts=(*pivots, *bundle.pivots),
             purposes=tuple(
                 Purpose(p.purpose, p.action, p.object, p.goal) for p in document.purpose
             ),
             force_transfer=document.force_transfer,
             sources=(
-                own,
-                *(file.source for file in files.values()),
-                *dict.fromkeys(group.sources),
+                replace(own, path=file.name),
+                *(each.source for each in files.values()),
+                *meshes,
             ),
             notices=(
-                *(notice for file in files.values() for notice in file.notices),
-                *group.notices,
-                *_gap_notices(group),
+                *(notice for each in files.values() for notice in each.notices),
+                *bundle.notices,
+                *(notice for frame in frames for notice in frame.notices),
+                *(notice for entry in document.sensor for notice in _doubtful_kind(entry)),
+                *_gap_notices(streams),
             ),
             others=tuple(agents[1:]),
-            conventions=group.conventions,
+            conventions={name: body.conventions for name, body in bodies.items()},
         )
         return with_meeting_hands(trial if document.parts == "apart" else grouped(trial))
     except CaptureError as error:
-        raise CaptureError(f"{document.file_path}: {error}") from None
+        raise CaptureError(f"{file}: {error}") from None
 
 
 def frame_times(place: str | Path, *, file: str = "") -> Times:
@@ -198,26 +261,20 @@ def frame_times(place: str | Path, *, file: str = "") -> Times:
 
     With it the frame numbers of labels become times, whatever rate the capture has.
     """
-    document, _ = open_bundle(place)
-    files = read_files(document)
-    if file and file not in files:
-        raise document.unknown("file", file, files, "files")
-    recording = files[file or next(iter(files))]
-    times = recording.marker_times
-    if not recording.markers:
-        times = next(iter(recording.bodies.values())).times
-    return times - _declared(document, files).start_s
+    bundle = _read_bundle(place)
+    if file and file not in bundle.files:
+        raise bundle.document.unknown("file", file, bundle.files, "files")
+    return bundle.files[file or next(iter(bundle.files))].times - bundle.start_s
 
 
-def files_of(place: str | Path) -> tuple[dict[str, WorldRecording], float]:
+def files_of(place: str | Path) -> tuple[Files, float]:
     """Everything in a capture's files in the world, and when in their time it begins [s].
 
     Raises:
         CaparError: As of ``read_capture``.
     """
-    document, _ = open_bundle(place)
-    files = read_files(document)
-    return files, _declared(document, files).start_s
+    bundle = _read_bundle(place)
+    return bundle.files, bundle.start_s
 
 
 def _check_names(document: CaptureFile) -> None:
@@ -285,108 +342,14 @@ def _read_file(document: CaptureFile, name: str) -> WorldRecording:
     return replace(world, places=entry.places)
 
 
-@dataclass(frozen=True)
-class _Declared:
-    """Everything that a capture consists of, but for its name and performer."""
-
-    sensors: tuple[Sensor, ...]
-    objects: tuple[TagObject, ...]
-    start_s: float
-    """The files' time that is the capture's zero [s]."""
-
-    notices: tuple[Notice, ...]
-    sources: tuple[Source, ...]
-    pivot_contacts: tuple[PivotContact, ...]
-    """Those that many objects declared at once share."""
-
-    conventions: Mapping[str, Conventions]
-    """By which each body's file was read, by the body's name."""
+def _stream(entry: SensorEntry | ObjectEntry, bundle: _Bundle) -> Stream:
+    """A recorded body's poses on the capture's clock."""
+    own = bundle.bodies[entry.name].stream
+    shifted = Stream(own.times - bundle.start_s, own.positions, own.orientations)
+    return resampled(shifted, bundle.times, extend=entry.extend)
 
 
-def _declared(document: CaptureFile, files: Files) -> _Declared:
-    """The sensors and objects of a capture.toml, resampled to one clock."""
-    many = [(entry, *many_objects(entry, files)) for entry in document.objects_from]
-    sensors = [*document.sensor]
-    sensors += [each for entry in document.sensors_from for each in _many_sensors(entry, files)]
-    objects = [*document.object, *(each for _, found, _ in many for each in found)]
-    entries: list[SensorEntry | ObjectEntry] = [*sensors, *objects]
-    bodies: dict[int, Body] = {}
-    frames, shapes = [], []
-    for entry in entries:
-        frame = Frame()
-        if entry.body or entry.markers:
-            bodies[id(entry)] = body = find_body(entry, files)
-            frame = body.frame
-        frame.owner = entry.name
-        frames.append(frame)
-        shapes.append(build_shape(entry.shape, frame) if entry.shape else None)
-    streams = [body.stream for body in bodies.values()]
-    times, start = shared_clock(
-        streams,
-        rate_hz=document.rate_hz,
-        span_s=(document.from_s, document.to_s),
-        where=document.where(),
-    )
-
-    def stream(entry: SensorEntry | ObjectEntry) -> Stream:
-        own = bodies[id(entry)].stream
-        shifted = Stream(own.times - start, own.positions, own.orientations)
-        return resampled(shifted, times, extend=entry.extend)
-
-    made_sensors = tuple(
-        replace(_sensor(entry, stream(entry)), shape=shape)
-        for entry, shape in zip(sensors, shapes, strict=False)
-    )
-    built: dict[int, TagObject] = {}
-    for index in sorted(range(len(objects)), key=lambda n: bool(objects[n].top_at_bottom_of)):
-        entry, shape, derivation = objects[index], shapes[len(sensors) + index], ""
-        if id(entry) in bodies:
-            own = stream(entry)
-        elif entry.top_at_bottom_of:
-            pose, derivation = under_object(entry, shape, list(built.values()))
-            own = _still(times, *pose)
-        else:
-            own = _still(times, *_fixed_pose(entry))
-        assumed = "; ".join(filter(None, (entry.assumed, derivation)))
-        if shape and assumed:
-            shape = replace(shape, source=ShapeSource.ASSUMED)
-        built[index] = TagObject(
-            name=entry.name,
-            tag=TagType(entry.tag),
-            stream=own,
-            shape=shape,
-            kind=entry.kind or entry.name,
-            assumed=assumed,
-            deformable=entry.deformable,
-            motion_floor_m=entry.motion_floor_m,
-            mass_kg=entry.mass_kg,
-            agent=entry.agent,
-        )
-    return _Declared(
-        sensors=made_sensors,
-        objects=tuple(built[index] for index in range(len(objects))),
-        start_s=start,
-        notices=(
-            *(notice for body in bodies.values() for notice in body.notices),
-            *(notice for _, _, notices in many for notice in notices),
-            *(notice for frame in frames for notice in frame.notices),
-            *(notice for entry in document.sensor for notice in _doubtful_kind(entry)),
-            *rate_notices(streams, document.rate_hz),
-        ),
-        sources=tuple(source for frame in frames for source in frame.sources),
-        pivot_contacts=tuple(
-            PivotContact(entry.touched_by, each.name, entry.touched_within_m)
-            for entry, found, _ in many
-            if entry.touched_within_m is not None
-            for each in found
-        ),
-        conventions={
-            entry.name: bodies[id(entry)].conventions for entry in entries if id(entry) in bodies
-        },
-    )
-
-
-def _sensor(entry: SensorEntry, stream: Stream) -> Sensor:
+def _sensor(entry: SensorEntry, stream: Stream, shape: Shape | None) -> Sensor:
     if not any(entry.gaze):
         raise entry.error("gaze", "gaze of no length.", "It is a direction in the sensor's frame.")
     kind = entry.end_effector
@@ -400,8 +363,40 @@ def _sensor(entry: SensorEntry, stream: Stream) -> Sensor:
         role=Role(entry.role or ("attends" if kind in {"head", "eyes"} else "acts")),
         gaze=(entry.gaze[0], entry.gaze[1], entry.gaze[2]),
         eye=(entry.eye[0], entry.eye[1], entry.eye[2]),
+        shape=shape,
         agent=entry.agent,
     )
+
+
+def _objects(bundle: _Bundle, shapes: Mapping[str, Shape | None]) -> list[TagObject]:
+    """The objects in their order; supports are placed under those that are not placed so."""
+    built: dict[str, TagObject] = {}
+    for entry in sorted(bundle.objects, key=lambda each: bool(each.top_at_bottom_of)):
+        shape, derivation = shapes[entry.name], ""
+        if entry.name in bundle.bodies:
+            stream = _stream(entry, bundle)
+        else:
+            if entry.top_at_bottom_of:
+                pose, derivation = under_object(entry, shape, list(built.values()))
+            else:
+                pose = _fixed_pose(entry)
+            stream = Stream(bundle.times, *(np.tile(each, (len(bundle.times), 1)) for each in pose))
+        assumed = "; ".join(filter(None, (entry.assumed, derivation)))
+        if shape and assumed:
+            shape = replace(shape, source=ShapeSource.ASSUMED)
+        built[entry.name] = TagObject(
+            name=entry.name,
+            tag=TagType(entry.tag),
+            stream=stream,
+            shape=shape,
+            kind=entry.kind or entry.name,
+            assumed=assumed,
+            deformable=entry.deformable,
+            motion_floor_m=entry.motion_floor_m,
+            mass_kg=entry.mass_kg,
+            agent=entry.agent,
+        )
+    return [built[entry.name] for entry in bundle.objects]
 
 
 def _doubtful_kind(entry: SensorEntry) -> list[Notice]:
@@ -414,9 +409,7 @@ def _doubtful_kind(entry: SensorEntry) -> list[Notice]:
     return [notice("end-effector-unknown", entry.name, stated=stated, known=known, near=near[0])]
 
 
-def _fixed_pose(
-    entry: ObjectEntry,
-) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "4"]]:
+def _fixed_pose(entry: ObjectEntry) -> WorldPose:
     """The stated pose of an object in the world, whose z axis points up."""
     position = entry.position or []
     if len(position) != 3:
@@ -425,42 +418,18 @@ def _fixed_pose(
             f"position = {position}; without top_at_bottom_of it takes x, y and z.",
             "They are in the world, whose z axis points up whatever `up` says of the files.",
         )
-    orientation = geometry.unit(np.array([entry.orientation or (1.0, 0.0, 0.0, 0.0)]))[0]
-    pose = geometry.transforms(np.array(position), orientation)
-    return pose.translation, pose.rotation.as_quat(scalar_first=True)
+    turn = geometry.rotations(geometry.unit(np.array([entry.orientation or (1.0, 0.0, 0.0, 0.0)])))
+    return np.array(position), turn.as_quat(scalar_first=True)[0]
 
 
-def _still(
-    times: Times, position: Float[np.ndarray, "3"], orientation: Float[np.ndarray, "4"]
-) -> Stream:
-    frames = len(times)
-    return Stream(times, np.tile(position, (frames, 1)), np.tile(orientation, (frames, 1)))
-
-
-def _pivots(document: CaptureFile, group: _Declared) -> list[PivotContact]:
-    out = []
-    known = [each.name for each in group.sensors] + [each.name for each in group.objects]
-    for entry in document.pivot_contact:
-        for key in ("first", "second"):
-            if (name := getattr(entry, key)) not in known:
-                raise entry.unknown("body", name, known, key)
-        out.append(PivotContact(entry.first, entry.second, entry.distance_m))
-    return out
-
-
-def _gap_notices(group: _Declared) -> list[Notice]:
+def _gap_notices(streams: Mapping[str, Stream]) -> Iterator[Notice]:
     """A notice for every interval in which a body is lost for longer than is interpolated."""
-    out = []
-    streams = {each.name: each.stream for each in group.sensors}
-    streams |= {each.name: each.stream for each in group.objects}
     for name, stream in streams.items():
         times, last = stream.times, len(stream.times) - 1
         for first, end in geometry.runs(stream.lost):
-            if times[min(end + 1, last)] - times[max(first - 1, 0)] <= GAP_S:
-                continue
-            span = {"start_s": float(times[first]), "end_s": float(times[end])}
-            out.append(notice("long-gap", name, **({} if (first, end) == (0, last) else span)))
-    return out
+            if times[min(end + 1, last)] - times[max(first - 1, 0)] > GAP_S:
+                span = {"start_s": float(times[first]), "end_s": float(times[end])}
+                yield notice("long-gap", name, **({} if (first, end) == (0, last) else span))
 
 
 def _bodies(entry: ManySensors | ManyObjects, files: Files) -> Mapping[str, Any]:
@@ -559,27 +528,23 @@ def _joined(capture: Capture, limb: str, leader: Sensor, others: Sequence[Sensor
     name = f"{leader.side}_{limb}"
     if leader.agent and capture.others:
         name = f"{leader.agent}_{name}"
-    taken = leader.name in {each.name for each in capture.objects} or name in capture.bodies
-    if taken or set(words_of(leader.name)) & set(WHOLES[limb]):
+    if name in capture.bodies or set(words_of(leader.name)) & set(WHOLES[limb]):
         name = leader.name
     link = leader.link
     if leader.end_effector != limb:
         link = f"{leader.side}_{LINKS.get(limb, limb)}"
-    changed = {leader.name: replace(leader, name=name, end_effector=limb, link=link)}
-    changed |= {each.name: replace(each, part_of=name, link=link) for each in others}
+    changed = {each.name: replace(each, part_of=name, link=link) for each in others}
+    changed[leader.name] = replace(leader, name=name, end_effector=limb, link=link)
     renamed = {leader.name: name}
-    pivots = tuple(
-        replace(
-            each,
-            first=renamed.get(each.first, each.first),
-            second=renamed.get(each.second, each.second),
-        )
+    pivots = [
+        replace(each, first=renamed.get(each.first, each.first),
+                second=renamed.get(each.second, each.second))
         for each in capture.pivot_contacts
-    )
+    ]  # fmt: skip
     sensors = ", ".join(each.name for each in (leader, *others))
     return replace(
         capture,
         sensors=tuple(changed.get(each.name, each) for each in capture.sensors),
-        pivot_contacts=pivots,
+        pivot_contacts=tuple(pivots),
         notices=(*capture.notices, notice("sensors-grouped", name, sensors=sensors)),
     )

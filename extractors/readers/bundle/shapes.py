@@ -2,7 +2,7 @@
 
 import io
 import zipfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -14,20 +14,16 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
 from capar.model.capture import Notice, Shape, ShapeSource, Source, TagObject, TagType, notice
-from capar.model.errors import CaparError, FileError
-from extractors.readers.files import check_file, check_zip, source_of
+from capar.model.errors import FileError
+from extractors.readers.files import check_file, check_zip, neighbours, source_of
 from extractors.readers.recording import UNITS
 from extractors.readers.schema.capture import (
-    BoxShape,
-    CapsuleShape,
     CapsulesShape,
-    CylinderShape,
     MarkerBoxShape,
     MeshShape,
     ObjectEntry,
     PartsShape,
     Pose,
-    SphereShape,
 )
 from extractors.readers.schema.entry import expanded
 
@@ -48,11 +44,18 @@ def read_mesh(path: Path) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarr
     suffix = path.suffix.lower().removeprefix(".")
     if suffix not in FORMATS:
         raise FileError(path, f"a mesh of kind {suffix!r}.", f"These are tried: {FORMATS}.")
-    _check_size(path)
+    if path.stat().st_size > MESH_LIMIT:
+        raise FileError(path, f"is a mesh of more than {MESH_LIMIT >> 20} MiB.", "Decimate it.")
+    _check_xml(path)
     try:
-        vertices, faces = _load(path, suffix)
-    except CaparError:
-        raise
+        import trimesh
+
+        # from memory, so that nothing the file refers to is opened
+        mesh: Any = trimesh.load(
+            io.BytesIO(path.read_bytes()), file_type=suffix, force="mesh", skip_materials=True
+        )
+        vertices = np.asarray(mesh.vertices, dtype=float)
+        faces = np.asarray(mesh.faces, dtype=np.int64).reshape(-1, 3)
     except ImportError as error:
         raise FileError(
             path,
@@ -80,44 +83,25 @@ def open_edges(vertices: Float[np.ndarray, "vertices 3"], faces: Int[np.ndarray,
     return int((counts == 1).sum())
 
 
-def _load(
-    path: Path, suffix: str
-) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "faces 3"]]:
-    import trimesh
-
-    # from memory, so that nothing the file refers to is opened
-    mesh: Any = trimesh.load(
-        io.BytesIO(path.read_bytes()), file_type=suffix, force="mesh", skip_materials=True
-    )
-    faces = np.asarray(mesh.faces, dtype=np.int64)
-    return np.asarray(mesh.vertices, dtype=float), faces.reshape(-1, 3)
-
-
-def _check_size(path: Path) -> None:
-    if path.stat().st_size > MESH_LIMIT:
-        raise FileError(path, f"is a mesh of more than {MESH_LIMIT >> 20} MiB.", "Decimate it.")
+def _check_xml(path: Path) -> None:
+    """XML may define no entities: a few lines of them expand without end."""
+    found = []
     with path.open("rb") as file:
         zipped = file.read(4) == b"PK\x03\x04"
     if zipped:
-        names = check_zip(path, MESH_LIMIT)
+        names = [each for each in check_zip(path, MESH_LIMIT) if each.lower().endswith(_XML)]
         with zipfile.ZipFile(path) as archive:
-            for name in names:
-                if name.lower().endswith(_XML):
-                    with archive.open(name) as member:
-                        _check_xml(path, member.read(MESH_LIMIT))
+            found = [archive.read(name) for name in names]
     elif path.suffix.lower() in _XML:
-        _check_xml(path, path.read_bytes())
-
-
-def _check_xml(path: Path, data: bytes) -> None:
-    """XML may define no entities: a few lines of them expand without end."""
-    text = data.replace(b"\0", b"")  # so that UTF-16 hides nothing
-    if b"<!ENTITY" in text or b"<!DOCTYPE" in text:
-        raise FileError(
-            path,
-            "is XML with a DOCTYPE or entities, which are never expanded.",
-            "Export it again, without them.",
-        )
+        found = [path.read_bytes()]
+    for data in found:
+        text = data.replace(b"\0", b"")  # so that UTF-16 hides nothing
+        if b"<!ENTITY" in text or b"<!DOCTYPE" in text:
+            raise FileError(
+                path,
+                "is XML with a DOCTYPE or entities, which are never expanded.",
+                "Export it again, without them.",
+            )
 
 
 LARGEST_M = 20.0  # No shape is longer [m].
@@ -142,7 +126,7 @@ class Frame:
     markers: tuple[str, ...] = ()
     """The names of the body's own markers."""
 
-    bones: Mapping[str, tuple[tuple[str, str], ...]] = field(default_factory=dict)
+    bones: Mapping[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
     """``children`` and ``descendants``: pairs of joints, the body itself being ``""``."""
 
     joint: str = ""
@@ -193,11 +177,7 @@ def transform(pose: Pose | None) -> RigidTransform:
 def _mesh(entry: MeshShape, frame: Frame) -> Described:
     path = expanded(entry, "mesh")
     if not path.is_file():
-        remedy = f"There is no folder {path.parent}."
-        if path.parent.is_dir():
-            names = sorted(file.name for file in path.parent.iterdir())
-            remedy = f"The folder holds: {', '.join(names[:12])}"
-        raise entry.error("mesh", f"no mesh file {entry.mesh!r} ({path}).", remedy)
+        raise entry.error("mesh", f"no mesh file {entry.mesh!r} ({path}).", neighbours(path))
     vertices, faces = read_mesh(path)
     frame.sources.append(replace(source_of(path, "mesh"), path=entry.mesh))
     if edges := open_edges(vertices, faces):
@@ -215,10 +195,6 @@ def _mesh(entry: MeshShape, frame: Frame) -> Described:
     return vertices, faces, path.name
 
 
-def _box(entry: BoxShape, frame: Frame) -> Described:
-    return _box_about(np.zeros(3), entry.box)
-
-
 def _marker_box(entry: MarkerBoxShape, frame: Frame) -> Described:
     names = entry.around or list(frame.markers)
     if len(names) < 2:
@@ -231,39 +207,51 @@ def _marker_box(entry: MarkerBoxShape, frame: Frame) -> Described:
         raise entry.error(
             "box", f"the box would be {_text(size)} m.", "Are the markers of one body?"
         )
-    return _box_about((low + high) / 2, size)
+    vertices, faces, text = _box(size)
+    return vertices + (low + high) / 2, faces, text
 
 
-def _box_about(middle: np.ndarray, size: list[float]) -> Described:
+def _box(size: list[float]) -> Described:
     import trimesh
 
     box = trimesh.creation.box(extents=size)
-    return np.array(box.vertices) + middle, np.array(box.faces), f"box {_text(size)} m"
+    return np.array(box.vertices), np.array(box.faces), f"box {_text(size)} m"
 
 
-def _cylinder(entry: CylinderShape, frame: Frame) -> Described:
+def _text(size: list[float]) -> str:
+    return " x ".join(f"{each:.3g}" for each in size)
+
+
+def _cylinder(radius: float, height: float) -> Described:
     import trimesh
 
-    radius, height = entry.cylinder
     mesh = trimesh.creation.cylinder(radius=radius, height=height, sections=32)
     text = f"cylinder of radius {radius:.3g} m, height {height:.3g} m"
     return np.array(mesh.vertices), np.array(mesh.faces), text
 
 
-def _sphere(entry: SphereShape, frame: Frame) -> Described:
-    zero = np.zeros(3)
-    return *_capsule_between(zero, zero, entry.sphere), f"sphere of radius {entry.sphere:.3g} m"
-
-
-def _capsule(entry: CapsuleShape, frame: Frame) -> Described:
-    radius, height = entry.capsule
+def _capsule(radius: float, height: float) -> Described:
     half = np.array([0.0, 0.0, height / 2])
     text = f"capsule of radius {radius:.3g} m, height {height:.3g} m"
     return *_capsule_between(-half, half, radius), text
 
 
 def _capsules(entry: CapsulesShape, frame: Frame) -> Described:
-    pairs = _pairs(entry, frame)
+    """Capsules between pairs of points; the body itself is ``""``."""
+    pairs = entry.capsules
+    if isinstance(pairs, str):
+        if pairs not in frame.bones:
+            raise entry.error(
+                "capsules",
+                f"capsules = {pairs!r} needs a body with a skeleton.",
+                'Give pairs of names: [["WRIST", "INDEX"]].',
+            )
+        pairs = [[*bone] for bone in frame.bones[pairs]] or [["", ""]]
+        for first, second in pairs:
+            low, high = frame.lengths(first, second) if frame.lengths else (0.0, 0.0)
+            if high - low > STRETCH_M:
+                bone, found = (first or frame.joint, second), {"shortest_m": low, "longest_m": high}
+                frame.notices.append(notice("bone-stretches", frame.owner, *bone, **found))
     points = {"": np.zeros(3)}
     for name in sorted({name for pair in pairs for name in pair} - {""}):
         points[name] = _point(entry, "capsules", frame, name)
@@ -272,33 +260,7 @@ def _capsules(entry: CapsulesShape, frame: Frame) -> Described:
     ((one, other), *more) = pairs
     far = float(np.linalg.norm(points[one] - points[other]))
     long = f" and length {far + 2.0 * entry.radius_m:.2g} m" * (not more and far > 0.0)
-    return *joined(meshes), f"{what} of radius {entry.radius_m:.3g} m{long}"
-
-
-def _pairs(entry: CapsulesShape, frame: Frame) -> list[tuple[str, str]]:
-    """The pairs of points that capsules are put between; the body itself is ``""``."""
-    if not isinstance(entry.capsules, str):
-        return [(first, second) for first, second in entry.capsules]
-    if entry.capsules not in frame.bones:
-        raise entry.error(
-            "capsules",
-            f"capsules = {entry.capsules!r} needs a body with a skeleton.",
-            'Give pairs of names: [["WRIST", "INDEX"]].',
-        )
-    pairs = list(frame.bones[entry.capsules]) or [("", "")]
-    frame.notices += _stretching(pairs, frame)
-    return pairs
-
-
-def _stretching(pairs: list[tuple[str, str]], frame: Frame) -> Iterator[Notice]:
-    """Of each bone that becomes longer and shorter: its ends are not joined to each other."""
-    for first, second in pairs:
-        shortest, longest = frame.lengths(first, second) if frame.lengths else (0.0, 0.0)
-        if longest - shortest > STRETCH_M:
-            bone = first or frame.joint, second
-            yield notice(
-                "bone-stretches", frame.owner, *bone, shortest_m=shortest, longest_m=longest
-            )
+    return *_joined(meshes), f"{what} of radius {entry.radius_m:.3g} m{long}"
 
 
 def _point(entry: Pose, key: str, frame: Frame, name: str) -> Float[np.ndarray, "3"]:
@@ -310,7 +272,7 @@ def _point(entry: Pose, key: str, frame: Frame, name: str) -> Float[np.ndarray, 
 def _parts(entry: PartsShape, frame: Frame) -> Described:
     parts = [_placed(part, frame) for part in entry.parts]
     meshes = [(vertices, faces) for vertices, faces, _ in parts]
-    return *joined(meshes), " + ".join(text for _, _, text in parts)
+    return *_joined(meshes), " + ".join(text for _, _, text in parts)
 
 
 def mirrored(points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
@@ -318,7 +280,7 @@ def mirrored(points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points
     return np.asarray(points * np.array([-1.0, 1.0, 1.0]))
 
 
-def joined(meshes: list[Mesh]) -> Mesh:
+def _joined(meshes: list[Mesh]) -> Mesh:
     """Several meshes as one; they may overlap."""
     starts = np.cumsum([0, *(len(vertices) for vertices, _ in meshes)])
     faces = [faces + start for (_, faces), start in zip(meshes, starts, strict=False)]
@@ -342,17 +304,18 @@ def _capsule_between(
     return turn.apply(vertices) + first, faces
 
 
-def _text(size: list[float]) -> str:
-    return " x ".join(f"{each:.3g}" for each in size)
+def _sphere(radius: float) -> Described:
+    zero = np.zeros(3)
+    return *_capsule_between(zero, zero, radius), f"sphere of radius {radius:.3g} m"
 
 
 _MAKERS: dict[str, Callable[[Any, Frame], Described]] = {
     "MeshShape": _mesh,
-    "BoxShape": _box,
+    "BoxShape": lambda entry, _: _box(entry.box),
     "MarkerBoxShape": _marker_box,
-    "CylinderShape": _cylinder,
-    "SphereShape": _sphere,
-    "CapsuleShape": _capsule,
+    "CylinderShape": lambda entry, _: _cylinder(*entry.cylinder),
+    "SphereShape": lambda entry, _: _sphere(entry.sphere),
+    "CapsuleShape": lambda entry, _: _capsule(*entry.capsule),
     "CapsulesShape": _capsules,
     "PartsShape": _parts,
 }
@@ -386,47 +349,36 @@ def under_object(
     bottoms = np.array([float(corners[:, 2].min()) for corners, _ in found])
     top = float(bottoms.min() if entry.of == "lowest" else np.median(bottoms))
     corners = np.concatenate([corners for corners, _ in found])
-    middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
+    x, y = ((corners.min(axis=0) + corners.max(axis=0)) / 2)[:2]
+    if entry.position is not None:
+        if len(entry.position) != 2:
+            raise entry.error(
+                "position",
+                f"position = {entry.position} has a height, which top_at_bottom_of gives.",
+                "Give x and y only.",
+            )
+        x, y = entry.position
     turn = Rotation.from_euler("z", entry.turn_deg, degrees=True)
     highest = float(turn.apply(np.array(shape.vertices))[:, 2].max())
-    x, y = _place(entry, middle)
     height = top - (highest if entry.surface_m is None else entry.surface_m)
-    text = f"top at {top:.3f} m, {_which(entry, resting)} at rest at {found[0][1]:.2f} s"
+    which = f"the lowest point of {resting[0].name}"
+    if len(resting) > 1:
+        of = {"lowest": "lowest point of the lowest", "median": "median of the lowest points"}
+        which = f"the {of[entry.of]} of {len(resting)} objects"
+    text = f"top at {top:.3f} m, {which} at rest at {found[0][1]:.2f} s"
     return (np.array([x, y, height]), geometry.quaternions(turn)), text
-
-
-def _place(entry: ObjectEntry, middle: Float[np.ndarray, "3"]) -> tuple[float, float]:
-    """Where the support stands [m]: as stated, or under the middle of what rests on it."""
-    if entry.position is None:
-        return float(middle[0]), float(middle[1])
-    if len(entry.position) != 2:
-        raise entry.error(
-            "position",
-            f"position = {entry.position} has a height, which top_at_bottom_of gives.",
-            "Give x and y only.",
-        )
-    return entry.position[0], entry.position[1]
-
-
-def _which(entry: ObjectEntry, resting: Sequence[TagObject]) -> str:
-    """In words: the point that gives the height."""
-    if len(resting) == 1:
-        return f"the lowest point of {resting[0].name}"
-    if entry.of == "lowest":
-        return f"the lowest point of the lowest of {len(resting)} objects"
-    return f"the median of the lowest points of {len(resting)} objects"
 
 
 def _corners(entry: ObjectEntry, thing: TagObject) -> tuple[Float[np.ndarray, "corners 3"], float]:
     """An object's corners in the world at the stated time [m], and the time it is seen at [s]."""
+    times, known = thing.stream.times, np.flatnonzero(~thing.stream.lost)
     if entry.at_s is None:
         raise entry.error("top_at_bottom_of", f"'at_s' is missing: when {thing.name} rests there.")
-    at_s = entry.at_s + (float(thing.stream.times[-1]) if entry.at_s < 0.0 else 0.0)
-    known = np.flatnonzero(~thing.stream.lost)
     if not known.size:
         raise entry.error("at_s", f"{thing.name} is never seen.")
-    frame = int(known[np.argmin(np.abs(thing.stream.times[known] - at_s))])
-    seen_s = float(thing.stream.times[frame])
+    at_s = entry.at_s + (float(times[-1]) if entry.at_s < 0.0 else 0.0)
+    frame = int(known[np.argmin(np.abs(times[known] - at_s))])
+    seen_s = float(times[frame])
     if abs(seen_s - at_s) > NEAR_S:
         raise entry.error(
             "at_s", f"{thing.name} is not seen near {at_s:g} s, but at {seen_s:.2f} s."
@@ -436,16 +388,14 @@ def _corners(entry: ObjectEntry, thing: TagObject) -> tuple[Float[np.ndarray, "c
 
 
 def _resting(entry: ObjectEntry, others: Sequence[TagObject]) -> list[TagObject]:
-    """The object or, by a pattern, the objects that rest on the support."""
-    pattern = entry.top_at_bottom_of or ""
-    named = [thing for thing in others if thing.name == pattern]
-    if "*" not in pattern and not named:
-        raise entry.unknown("object", pattern, [o.name for o in others], "top_at_bottom_of")
-    fitting = named or [
-        thing
-        for thing in others
-        if thing.tag is TagType.MOBILE and fnmatchcase(thing.name, pattern)
-    ]
+    """The object or, by a pattern, the mobile objects that rest on the support."""
+    pattern, names = entry.top_at_bottom_of or "", [each.name for each in others]
+    if pattern in names:
+        return [others[names.index(pattern)]]
+    if "*" not in pattern:
+        raise entry.unknown("object", pattern, names, "top_at_bottom_of")
+    mobile = (each for each in others if each.tag is TagType.MOBILE)
+    fitting = [each for each in mobile if fnmatchcase(each.name, pattern)]
     if not fitting:
         raise entry.error("top_at_bottom_of", f"no mobile object fits {pattern!r}.")
-    return [thing for thing in fitting if thing.shape] or fitting
+    return [each for each in fitting if each.shape] or fitting
