@@ -10,7 +10,6 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
-import trimesh
 from scipy.spatial.transform import Rotation
 from virtual_bodies.moving import MILLIMETRE, TENTH_DEG, Moved, turning
 
@@ -121,15 +120,6 @@ def test_a_glb_animates_its_nodes_to_the_same_poses(moved: Moved) -> None:
         assert (expected.inv() * turn).magnitude() < TENTH_DEG
 
 
-def test_a_glb_is_loaded_by_trimesh_as_tall_as_the_child(moved: Moved, tmp_path: Path) -> None:
-    human, times, _ = moved
-    standing = np.tile(human.posture(), (len(times), 1))
-    (tmp_path / "body.glb").write_bytes(glb_bytes(human, times, standing))
-    low, high = trimesh.load(tmp_path / "body.glb").bounds
-    assert high[1] - low[1] == pytest.approx(human.measures["stature"], rel=0.03)
-    assert low[1] == pytest.approx(0.0, abs=0.02)
-
-
 SCRIPT = """
 const validator = require("gltf-validator");
 const bytes = new Uint8Array(require("fs").readFileSync(process.argv[1]));
@@ -206,33 +196,6 @@ def test_a_motion_of_more_frames_than_a_c3d_counts_is_refused() -> None:
     motion = np.broadcast_to(human.posture(), (count, len(human.posture())))
     with pytest.raises(CaparError, match="65536 frames"):
         c3d_bytes(human, np.arange(count) / 1000.0, motion)
-
-
-def test_pybvh_reads_every_joint_of_a_bvh_where_it_was(moved: Moved, tmp_path: Path) -> None:
-    pybvh = pytest.importorskip("pybvh", reason="pybvh is not installed")
-    human, times, motion = moved
-    path = tmp_path / "motion.bvh"
-    path.write_text(bvh_text(human, times, motion))
-    read, poses = pybvh.read_bvh_file(path, world_up="+y"), poses_of(human, motion)
-    assert read.frame_time == pytest.approx(1.0 / RATE_HZ)
-    assert set(read.joint_names) == set(poses.names)
-    ours = Rotation.from_matrix(np.eye(3)[AXES]).inv()
-    places, turned = read.node_positions(), _turned(read)
-    for number, name in enumerate(poses.names):
-        positions = ours.apply(places[:, read.node_index[name]]) * UNIT_M
-        turns = ours * turned[name] * ours.inv()
-        agree(positions, turns, poses.positions[:, number], poses.orientations[:, number])
-
-
-def _turned(read: Any) -> dict[str, Rotation]:
-    """The rotation of every joint in the file's world, from those against their parents."""
-    own = read.to_rotmat()[1]
-    out: dict[str, Rotation] = {}
-    for node in read.nodes:
-        if node.name in read.joint_index:
-            turn = Rotation.from_matrix(own[:, read.joint_index[node.name]])
-            out[node.name] = out[node.parent.name] * turn if node.parent else turn
-    return out
 
 
 def test_the_gltf_validator_finds_nothing_to_say_of_a_glb(moved: Moved, tmp_path: Path) -> None:

@@ -234,20 +234,6 @@ def _escaped(cell: str) -> str:
     return escape(cell)
 
 
-__all__ = [
-    "call",
-    "condition",
-    "force_lines",
-    "joint_lines",
-    "observation_text",
-    "par_text",
-    "preparation",
-    "segment_rows",
-    "segments_table",
-    "step_rows",
-    "steps_table",
-]
-
 Line = tuple[str, str]
 """What is stated, and what it is."""
 
@@ -308,19 +294,6 @@ def _complex(par: ComplexPar) -> str:
         f"  {_place(each.first)} {each.relation} {_place(each.second)}" for each in par.relations
     ]
     return "\n".join(out) + "\n"
-
-
-def observation_text(observation: Observation) -> str:
-    """The segments, joint actions, forces, complex PAR, UPARs and IPARs of an observation."""
-    parts = [
-        "\n".join(aligned(segment_rows(observation), right={1, 2})) + "\n",
-        *filter(None, ["".join(f"{line}\n" for line in joint_lines(observation))]),
-        *filter(None, ["".join(f"{line}\n" for line in force_lines(observation))]),
-        par_text(observation.complex_par),
-        *map(par_text, observation.upars),
-        *map(par_text, observation.ipars),
-    ]
-    return "\n".join(parts)
 
 
 def call(value: Call) -> str:

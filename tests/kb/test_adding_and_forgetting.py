@@ -62,13 +62,6 @@ def test_a_second_capture_is_recognised_and_only_its_own_is_added(actionary: Act
     assert len(complexes.rows) == 1
 
 
-def test_another_action_is_not_recognised(actionary: Actionary) -> None:
-    actionary.add(drink_from_mug())
-    assert actionary.recognise(pick_up_with_both_hands().complex_par) is None
-    assert actionary.recognise(drink_from_mug(agent="zoe").complex_par) == "DrinkFromMug"
-    assert actionary.recognise(with_unknown().complex_par) is None
-
-
 def test_forgetting_leaves_the_store_as_if_it_had_never_been_added(actionary: Actionary) -> None:
     actionary.add(by("ann", "first", name="DrinkFromMug"))
     before = statements(actionary)
@@ -132,13 +125,6 @@ def test_names_of_any_letters_are_kept_apart(actionary: Actionary) -> None:
     for name in odd:
         actionary.forget(name)
     assert actionary.observations() == ()
-
-
-def test_the_same_observation_makes_the_same_statements() -> None:
-    first, second = Actionary.in_memory(), Actionary.in_memory()
-    first.add(pick_up_with_both_hands())
-    second.add(pick_up_with_both_hands())
-    assert statements(first) == statements(second)
 
 
 @pytest.mark.parametrize("name", ACTIONS)

@@ -5,7 +5,7 @@ import io
 import json
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TypeAlias
@@ -16,7 +16,7 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 
 from capar.cli import main
 from kb.actionary import Actionary
-from kb.queries.questions import PARAMETERS, questions
+from kb.queries.questions import questions
 
 
 @pytest.fixture(scope="module")
@@ -189,19 +189,6 @@ def test_a_question_about_what_is_not_there_is_a_mistake(
     assert f"{folder}: {told}" in done.stderr and hint in done.stderr
 
 
-def test_whose_name_every_text_of_a_question_is_can_be_looked_up(folder: Path) -> None:
-    texts = {p.name for each in questions().values() for p in each.parameters if p.kind == "text"}
-    assert texts == set(PARAMETERS)
-    for name, described in PARAMETERS.items():
-        found = capar(
-            "query", f"SELECT ?name WHERE {{ {described['known']} }}", "--json", at=folder
-        )
-        assert found.returncode == 0, found.stderr
-        not_here = {"arrangement", "body", "preposition"}
-        not_here |= {"lemma", "levin"}  # these need the lexicon
-        assert json.loads(found.stdout) or name in not_here, name
-
-
 @pytest.mark.parametrize(("name", "text"), [("e.ttl", ""), ("e.jsonld", "[]"), ("e.nq", "# no\n")])
 def test_a_file_without_statements_is_a_mistake_and_makes_no_actionary(
     name: str, text: str, tmp_path: Path
@@ -230,54 +217,6 @@ def ask(folder: Path) -> Ask:
     return partial(capar, at=folder)
 
 
-def test_machines_get_whole_iris_and_people_short_ones(ask: Ask) -> None:
-    text = (
-        "SELECT ?o ?s WHERE { ?o a capar:Observation ; rdfs:label 'Strange' . "
-        "?o capar:segment ?s . ?s capar:index 0 }"
-    )
-    whole = "https://w3id.org/capar/data/observation/Strange"
-    pair = [whole, f"{whole}#segment.right_hand.0"]
-    assert json.loads(ask("query", text, "--json").stdout) == [dict(zip("os", pair, strict=True))]
-    table = ask("query", text).stdout.splitlines()
-    assert table[1].split() == [each.replace(whole, "data:observation/Strange") for each in pair]
-    for printed in (table[1].split()[1], f"<{table[1].split()[1]}>"):
-        pasted = f"SELECT ?i WHERE {{ {printed} capar:index ?i . }}"
-        assert json.loads(ask("query", pasted, "--json").stdout) == [{"i": 0}]
-    lines = ask("query", text, "--format", "csv").stdout.splitlines()
-    assert lines == ["o,s", ",".join(pair)]
-    graph = f"SELECT (COUNT(*) AS ?n) WHERE {{ GRAPH <{lines[1].split(',')[0]}> {{ ?s ?p ?o }} }}"
-    assert json.loads(ask("query", graph, "--json").stdout)[0]["n"] > 0
-    built = "CONSTRUCT { ?s a capar:Segment } WHERE { ?s a capar:UnknownSegment }"
-    (row,) = csv.DictReader(io.StringIO(ask("query", built, "--format", "csv").stdout))
-    assert row["object"] == "https://w3id.org/capar/ontology#Segment"
-
-
-def test_between_is_told_with_every_body_that_it_is_between() -> None:
-    made = with_unknown()
-    (link,) = made.links
-    said = (
-        ("beside", "cup", "shelf"), ("beside", "cup", "table"),
-        ("between", "cup", "shelf"), ("between", "cup", "table"),
-        ("between", "jug", "bowl"), ("between", "jug", "cup"), ("between", "jug", "shelf"),
-    )  # fmt: skip
-    segments = tuple(replace(each, prepositions=said) for each in link.segments)
-    actionary = Actionary.in_memory()
-    actionary.add(replace(made, links=(replace(link, segments=segments),)))
-    rows = actionary.ask("where")
-    assert [(r["index"], r["preposition"], r["body"], r["other"]) for r in rows] == [
-        (index, *each)
-        for index in range(len(segments))
-        for each in (
-            ("beside", "cup", "shelf"),
-            ("beside", "cup", "table"),
-            ("between", "cup", "shelf table"),
-            ("between", "jug", "bowl cup shelf"),
-        )
-    ]
-    narrow = actionary.ask("where", preposition="between", body="cup")
-    assert {each["other"] for each in narrow} == {"shelf table"} and len(narrow) == len(segments)
-
-
 def test_what_begins_as_sparql_is_no_questions_name(ask: Ask) -> None:
     described = ask("query", "DESCRIBE <https://w3id.org/capar/data/observation/Strange>")
     assert described.returncode == 0 and "capar:Observation" in described.stdout
@@ -295,43 +234,11 @@ def test_what_begins_as_sparql_is_no_questions_name(ask: Ask) -> None:
     assert empty.returncode == 2 and "the query is empty" in empty.stderr
 
 
-def test_a_file_keeps_its_meaning_even_if_it_is_called_like_a_query(
-    ask: Ask, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("select all.txt").write_text("ASK {}")
-    asked = ask("query", "select all.txt")
-    assert asked.stdout.split() == ["answer", "yes"], asked.stderr
-    missing = ask("query", "nothere.rq")
-    assert missing.returncode == 2
-    assert "capar: nothere.rq: cannot be used: No such file or directory. Name" in missing.stderr
-    Path("folder.rq").mkdir()
-    wrong = ask("query", "folder.rq")
-    assert wrong.returncode == 2
-    assert "capar: folder.rq: cannot be used: Is a directory. Name a file" in wrong.stderr
-    Path("latin.rq").write_bytes("ASK {} # é".encode("latin-1"))
-    wrong = ask("query", "latin.rq")
-    assert wrong.returncode == 2 and "latin.rq: cannot be read as a query" in wrong.stderr
-
-
 @pytest.mark.parametrize("limit", ["nan", "inf", "-1", "0"])
 def test_a_time_limit_that_is_none_is_refused(limit: str, ask: Ask) -> None:
     done = ask("query", "actions", "--time-limit", limit)
     assert (done.returncode, done.stdout) == (2, "")
     assert "a positive number of seconds" in done.stderr
-
-
-def test_a_word_that_the_ontology_lacks_is_warned_of_with_the_nearest(ask: Ask) -> None:
-    done = ask(
-        "query", "SELECT ?x { ?x capar:nmae ?y ; a <https://w3id.org/capar/ontology#Segmnet> }"
-    )
-    assert done.returncode == 0
-    assert "warning: the ontology has no capar:nmae" in done.stderr
-    assert "capar:name" in done.stderr and "capar:Segment" in done.stderr
-    known = ask(
-        "query", 'SELECT (capar:element("1 2", 0) AS ?x) { ?s a capar:Segment # capar:nmae\n }'
-    )
-    assert "warning" not in known.stderr
 
 
 def test_several_actions_are_asked_for_with_a_comma(ask: Ask) -> None:
@@ -341,12 +248,6 @@ def test_several_actions_are_asked_for_with_a_comma(ask: Ask) -> None:
     both = rows("MoveObj,MoveObjTo")
     assert both
     assert sorted(map(str, both)) == sorted(map(str, [*rows("MoveObj"), *rows("MoveObjTo")]))
-
-
-def test_an_empty_answer_says_so_to_people_alone(ask: Ask) -> None:
-    done = ask("query", "corrections")
-    assert (done.stdout.splitlines()[1:], done.stderr) == ([], "nothing found\n")
-    assert ask("query", "corrections", "--json").stderr == ""
 
 
 def test_a_verb_is_not_asked_of_an_actionary_without_a_lexicon(ask: Ask) -> None:
@@ -369,32 +270,6 @@ def test_a_time_that_ends_before_it_begins_is_refused_and_a_moment_is_none(ask: 
     rows = json.loads(ask("query", "segments", "from=2", "until=2", "--json").stdout)
     assert rows
     assert all(row["begins"] < 2.0 < row["ends"] for row in rows)
-
-
-def test_what_is_nowhere_declared_or_recorded_is_noted(ask: Ask) -> None:
-    assert "note: nothing is declared" in ask("query", "uses", "object=mug").stderr
-    assert "note: recorded is empty" in ask("query", "sources").stderr
-    assert "note" not in ask("query", "sources", "--json").stderr
-
-
-def test_what_is_declared_is_told_beside_what_was_observed(ask: Ask, tmp_path: Path) -> None:
-    with Actionary.open(tmp_path / "own") as actionary:
-        actionary.add(drink_from_mug())
-        (who,) = actionary.agents()
-    place = ("--actionary", str(tmp_path / "own"))
-    assert "declared of every mug: Wipe" in ask("object", "can", "mug", "Wipe", *place).stdout
-    done = ask("query", "uses", "object=mug", *place)
-    assert "Wipe" in done.stdout and "nothing is declared" not in done.stderr
-    assert "declared of" in ask("agent", "can", who, "Juggle", *place).stdout
-    done = ask("query", "abilities", f"performer={who}", *place)
-    assert "Juggle" in done.stdout and "nothing is declared" not in done.stderr
-    wrong = ask("object", "can", "mgu", "Wipe", *place)
-    assert wrong.returncode == 2 and "no kind of object 'mgu'" in wrong.stderr
-
-
-def test_a_kind_of_end_effector_that_is_not_there_is_told_with_all_there_are(ask: Ask) -> None:
-    done = ask("query", "segments", "effector=finger")
-    assert done.returncode == 2 and "no kind of end-effector 'finger'; there are: " in done.stderr
 
 
 def test_a_filter_that_fits_in_two_ways_counts_once(ask: Ask) -> None:

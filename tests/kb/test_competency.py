@@ -4,14 +4,13 @@ They are asked of the shipped demo, of two unnamed performers, and where there a
 two takes from a kitchen.
 """
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
 from competency import QUERIES, World, rounded, side, step
 
-from capar.model.capture import recorded_at
 from capar.model.errors import UnknownNameError
 from capar.model.facts import Leans, Lies, LookingAt, Moving, Touching
 from capar.model.observation import Observation, Segment
@@ -37,10 +36,6 @@ def asked(actionary: Actionary, name: str) -> set[tuple[object, ...]]:
 
     rows = actionary.store.ask(prepare(QUERIES[name])).plain()
     return rounded(row.values() for row in rows)
-
-
-def test_each_query_has_at_most_eight_lines() -> None:
-    assert all(len(each.strip().splitlines()) <= 8 for each in QUERIES.values())
 
 
 def test_when_the_whisk_was_held_while_the_bottle_was_tilted(
@@ -83,18 +78,6 @@ def test_which_objects_were_ever_inside_a_container(world: World, actionary: Act
     assert {row["observation"] for row in steps} == world.kitchen
 
 
-def test_what_was_done_between_two_times(world: World, actionary: Actionary) -> None:
-    for seen in world.seen:
-        start, end = 0.3 * seen.duration_s, 0.6 * seen.duration_s
-        rows = actionary.ask("segments", capture=seen.capture, **{"from": start, "until": end})
-        assert {row["address"] for row in rows} == {
-            f"{seen.capture}/{each.ee}/{each.index}"
-            for each in seen.segments
-            if each.end_s > start and each.start_s < end
-        }
-        assert rows
-
-
 @pytest.mark.parametrize("action", ["MoveObj", "Reach", "Touch"])
 def test_which_actions_are_kinds_of_one_and_by_whom_they_were_done(
     action: str, world: World, actionary: Actionary
@@ -108,18 +91,6 @@ def test_which_actions_are_kinds_of_one_and_by_whom_they_were_done(
     assert {(row["kind"], row["performer"]): row["times"] for row in rows} == expected
     performers = actionary.ask("performers", action=action)
     assert len(performers) == sum(expected.values())
-
-
-def test_average_duration_of_reach_for_each_performer(world: World, actionary: Actionary) -> None:
-    lasting = defaultdict(list)
-    for seen, each, _ in world.segments():
-        if world.is_kind(each, "Reach"):
-            lasting[world.performer(seen, each)].append(each.end_s - each.start_s)
-    rows = actionary.ask("durations", action="Reach")
-    assert {row["performer"]: row["seconds"] for row in rows} == {
-        who: pytest.approx(float(np.mean(times))) for who, times in lasting.items()
-    }
-    assert {"agent of cup_1", "agent of cup_2"} <= lasting.keys()
 
 
 def test_which_segments_are_unknown_and_what_they_match_partly(
@@ -154,32 +125,6 @@ def test_where_an_object_was_at_a_time(world: World, actionary: Actionary) -> No
                 assert np.linalg.norm(place - thing.stream.positions[frame]) < 0.01
                 found += 1
     assert found >= 4
-
-
-def test_what_comes_after_an_action_with_the_same_hand(world: World, actionary: Actionary) -> None:
-    for action in ("MoveObjTo", "Reach", "Lower"):
-        expected = Counter(
-            following.name
-            for seen in world.seen
-            for link in seen.links
-            if link.kind == "hand"
-            for each, following in zip(link.segments, link.segments[1:], strict=False)
-            if world.is_kind(each, action)
-        )
-        rows = actionary.ask("follows", action=action, effector="hand")
-        assert {row["next"]: row["times"] for row in rows} == expected
-
-
-def test_which_captures_have_a_touch_of_something_that_did_not_move(
-    world: World, actionary: Actionary
-) -> None:
-    expected = set()
-    for seen, each, _ in world.segments():
-        if each.name == "Touch" and each.objects:
-            moves = [e for e in world.facts(seen, Moving) if e.object == each.objects[0]]
-            if not any(e.first <= each.last and each.first <= e.last for e in moves):
-                expected.add((seen.capture,))
-    assert asked(actionary, "touched and unmoved") == expected
 
 
 def test_what_the_left_hand_did_during_the_right_hands_stirring_both_ways(
@@ -249,20 +194,6 @@ def test_which_rule_named_a_segment_and_with_which_thresholds(
     assert any(row["thresholds"] for row in rows)
 
 
-def test_when_with_which_version_and_from_which_files(world: World, actionary: Actionary) -> None:
-    rows = actionary.ask("sources")
-    expected = {
-        (seen.capture, seen.version, seen.rules, each.path, each.sha256)
-        for seen in world.seen
-        for each in seen.sources
-    }
-    columns = ("observation", "version", "rules", "file", "sha256")
-    assert {tuple(row[c] for c in columns) for row in rows if row["file"]} == expected
-    assert all(row["observed"] for row in rows)
-    recorded = {seen.capture: recorded_at(seen.sources) or None for seen in world.seen}
-    assert all(row["recorded"] == recorded[str(row["observation"])] for row in rows)
-
-
 def test_how_long_each_object_was_held_and_by_which_hand(
     world: World, actionary: Actionary
 ) -> None:
@@ -299,21 +230,6 @@ def test_how_long_each_object_was_held_and_by_which_hand(
     ]
 
 
-def test_when_bottle_and_table_touched(world: World, actionary: Actionary) -> None:
-    expected = {
-        (seen.capture, each.first * step(seen), each.last * step(seen))
-        for seen in world.seen
-        for each in world.facts(seen, Touching)
-        if (each.body, each.other) == ("bottle", "table")
-    }
-    assert asked(actionary, "in touch") == rounded(expected)
-    for given in ({"body": "bottle", "object": "table"}, {"body": "table", "object": "bottle"}):
-        rows = actionary.ask("contacts", **given)
-        told = [(row["observation"], row["begins"], row["ends"]) for row in rows]
-        assert rounded(told) == rounded(expected) and len(told) == len(expected)
-    assert {each[0] for each in expected} == world.kitchen
-
-
 def test_who_looked_at_an_object_before_grasping_it(world: World, actionary: Actionary) -> None:
     expected = {}
     for seen in world.seen:
@@ -331,47 +247,6 @@ def test_who_looked_at_an_object_before_grasping_it(world: World, actionary: Act
     assert rows
 
 
-def test_how_long_before_a_grasp_the_last_look_began(world: World, actionary: Actionary) -> None:
-    expected = set()
-    for seen in world.seen:
-        for link in seen.links:
-            for grasp in world.facts(seen, Touching):
-                begun = [
-                    look.first
-                    for look in world.facts(seen, LookingAt)
-                    if look.object == grasp.other and look.first < grasp.first
-                ]
-                possessed = any(
-                    segment.possessed
-                    and segment.objects[0] == grasp.other
-                    and segment.start_s < grasp.last * step(seen)
-                    and grasp.first * step(seen) < segment.end_s
-                    for segment in link.segments
-                )
-                if begun and possessed and grasp.body == link.ee:
-                    at, before = grasp.first, grasp.first - max(begun)
-                    times = (at * step(seen), before * step(seen))
-                    expected.add((seen.capture, link.ee, grasp.other, *times))
-    columns = ("observation", "ee", "object", "grasped", "seconds")
-    rows = actionary.ask("looked_before")
-    assert rounded([row[name] for name in columns] for row in rows) == rounded(expected)
-    assert len(rows) == len(expected) and expected
-
-
-def test_what_was_looked_at_is_told_with_its_times(world: World, actionary: Actionary) -> None:
-    for row in actionary.ask("looked_at"):
-        (seen,) = (each for each in world.seen if each.capture == row["observation"])
-        looks = {
-            (look.first * step(seen), look.last * step(seen))
-            for look in world.facts(seen, LookingAt)
-            if look.object == row["seen"]
-        }
-        time_s = float(str(row["time"]))
-        covering = rounded((a, b) for a, b in looks if a - 1e-6 <= time_s <= b + 1e-6)
-        told = rounded([(row["begins"], row["ends"])])
-        assert told <= covering if covering else told == {(None, None)}
-
-
 def test_highest_speed_of_the_right_hand_in_each_reach(world: World, actionary: Actionary) -> None:
     found = {str(address): speed for address, speed in asked(actionary, "reaching speeds")}
     expected = {}
@@ -383,33 +258,6 @@ def test_highest_speed_of_the_right_hand_in_each_reach(world: World, actionary: 
     assert {k: v for k, v in found.items() if v is not None} == {
         address: pytest.approx(speed, rel=0.05) for address, speed in expected.items()
     }
-
-
-def test_what_a_kind_of_object_is_used_for_as_observed_and_as_declared(
-    world: World, actionary: Actionary
-) -> None:
-    actionary.add_ability("Wipe", kind="container")
-    expected = Counter(
-        each.name
-        for seen, each, _ in world.segments()
-        if each.known and each.objects and each.objects[0] == "mug"
-    )
-    rows = actionary.ask("uses", object="mug")
-    observed = {row["action"]: row["times"] for row in rows if row["evidence"] == "observed"}
-    assert observed == expected
-    assert [row["action"] for row in rows if row["evidence"] == "declared"] == ["Wipe"]
-
-
-def test_what_an_agent_can_do_as_observed_and_as_declared(
-    world: World, actionary: Actionary
-) -> None:
-    seen = world.seen[0]
-    actionary.add_ability("Juggle", agent=seen.agent.name)
-    rows = actionary.ask("abilities", performer=seen.agent.name)
-    observed = {row["action"] for row in rows if row["evidence"] == "observed"}
-    same = [each for each in world.seen if each.agent.name == seen.agent.name]
-    assert observed == {each.name for one in same for each in one.segments if each.known}
-    assert [row["action"] for row in rows if row["evidence"] == "declared"] == ["Juggle"]
 
 
 @pytest.mark.parametrize("lemma", ["raise", "move", "touch"])
@@ -447,20 +295,6 @@ def test_which_segments_are_of_a_class_of_levins(world: World, actionary: Action
         if any(world.is_kind(each, name) for name in within)
     }
     assert {row["address"] for row in actionary.ask("levin", levin="9")} == expected
-
-
-def test_which_names_are_ambiguous_and_what_else_would_have_fitted(
-    world: World, actionary: Actionary
-) -> None:
-    expected = {
-        (address, each.name, other)
-        for _, each, address in world.segments()
-        if each.known
-        for other in each.candidates
-    }
-    rows = actionary.ask("ambiguous")
-    assert {(r["address"], r["action"], r["otherwise"]) for r in rows} == expected
-    assert expected
 
 
 def test_every_filter_leaves_exactly_what_it_says(world: World, actionary: Actionary) -> None:

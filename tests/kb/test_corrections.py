@@ -30,7 +30,6 @@ from kb.corrections import (
 )
 from kb.errors import CorrectionError
 from kb.language.describe import describe as described
-from kb.lexicon.verbs import seen_in
 from kb.store import names
 from ontology import CAPAR
 
@@ -67,11 +66,6 @@ def test_claims_leave_every_moment_with_one_name_and_the_later_claim_holds(made)
         latest = [n for n, (start, end) in enumerate(made) if start < moment < end]
         (span,) = (each for each in spans if each.start_s < moment < each.end_s)
         assert span.name == (f"Claim{latest[-1]}" if latest else "Touch")
-
-
-def test_a_claim_of_one_hand_leaves_the_other_as_it_was() -> None:
-    other = Span("left", 0.0, 4.0, "Touch")
-    assert overlay([other], Span("right", 1.0, 2.0, "Lift", by="Ada"))[0] == other
 
 
 def test_the_machines_segments_stay_and_the_account_differs(drunk: Actionary) -> None:
@@ -148,21 +142,6 @@ def test_the_corrected_links_are_the_account_and_are_described(drunk: Actionary)
     words = primitive_words(primitive_files())
     assert "lifted it" in described(found, words=words)
     assert "lifted" not in described(seen, words=words)
-
-
-def test_what_nobody_claims_stays_as_it_was() -> None:
-    seen = drink_from_mug()
-    assert corrected_links(seen.links, ()) == seen.links
-    assert (
-        corrected_links(seen.links, [Span("left_foot", 0.0, 1.0, "Kick", by="Ada")]) == seen.links
-    )
-
-
-def test_the_report_counts_what_persons_say_on_request(drunk: Actionary) -> None:
-    correct(drunk.store, at(1), Correction(name="Sip"), by="Ada")
-    counted = {each.primitive: each.count for each in seen_in(corrected(drunk.store))}
-    assert counted["Sip"] == 1
-    assert "Sip" not in {each.primitive for each in seen_in(drunk.store)}
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,6 @@ from ontology import CAPAR
 LINK = "<https://w3id.org/capar/data/observation/DrinkFromMug#link.right_hand>"
 KIND = "<https://w3id.org/capar/data/kind/mug>"
 DOUBLE = "\\^\\^<http://www.w3.org/2001/XMLSchema#double>"
-INTEGER = "\\^\\^<http://www.w3.org/2001/XMLSchema#integer>"
 
 
 def term(name: str) -> str:

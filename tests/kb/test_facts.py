@@ -28,10 +28,8 @@ from capar.model.facts import (
 from capar.model.observation import ForceStyle, Observation
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
-from kb.checks import check
 from kb.encode import encode
-from kb.encode.facts import held_contacts, in_order, overlap_s, stored_facts
-from kb.store.validation import by_thing, violations
+from kb.encode.facts import held_contacts, in_order, stored_facts
 from ontology import CAPAR
 
 MADE = (drink_from_mug(), pick_up_with_both_hands(), with_unknown())
@@ -123,40 +121,7 @@ def test_a_frame_has_the_same_seconds_in_facts_and_in_segments(drunk: Observatio
     assert all(time == seconds for time, seconds in times)
 
 
-def test_no_text_packs_several_names_or_numbers_into_one(drunk: Observation) -> None:
-    statements = encode(drunk)
-    packed = [
-        value
-        for thing, said in statements.things.items()
-        if "#fact." in thing.value
-        for values in said.values()
-        for value in values
-        if " " in getattr(value, "value", "")
-    ]
-    assert packed == []
-
-
-def test_what_is_stored_of_a_trial_is_at_most_half_of_what_schema_2_stored(
-    drunk: Observation,
-) -> None:
-    fact_statements = sum(5 for each in drunk.facts)  # a link, a class, a name, a text, a source
-    now = [
-        each
-        for each in encode(drunk).quads
-        if any(part in str(each.subject) for part in ("#fact.", "#samples."))
-    ]
-    assert len(now) < 0.5 * fact_statements
-    assert violations(by_thing(encode(drunk).quads)) == ()
-
-
 times = st.lists(st.integers(0, 200), min_size=2, max_size=12, unique=True).map(sorted)
-
-
-@given(times, st.tuples(st.integers(0, 200), st.integers(0, 200)).map(sorted))
-def test_the_time_shared_with_others_is_what_lies_in_both(ends: list[int], of: list[int]) -> None:
-    spans = list(zip(ends[::2], ends[1::2], strict=False))
-    counted = sum(any(a <= at < b for a, b in spans) for at in range(of[0], of[1]))
-    assert overlap_s((of[0], of[1]), spans) == counted
 
 
 def test_only_contacts_of_end_effectors_tell_how_long_the_thing_is_held() -> None:
@@ -205,14 +170,6 @@ FORCE = ForceStyle(
     impulse_ns=None,
     residual_m=0.001,
 )
-
-
-def test_damping_and_restitution_are_shown_with_the_kind_of_thing(actionary: Actionary) -> None:
-    actionary.add(replace(drink_from_mug(), profile="extended", forces=(FORCE,)))
-    shown = actionary.object_profile("mug")
-    assert shown["state: damping"] == ("3.0 2.5 0.0",)
-    assert shown["state: restitution"] == ("0.5",)
-    assert check(actionary.store, full=True) == ()
 
 
 def test_the_thesis_profile_keeps_the_thesis_damping(actionary: Actionary) -> None:

@@ -158,100 +158,6 @@ def test_an_answer_by_the_default_rules_is_the_golden_one(extended, name, given,
     assert rows(extended, name, given) == expected
 
 
-def test_which_actions_touch_a_mug_or_a_container(known: Actionary, extended: Actionary) -> None:
-    found = known.ask("touching", object="mug")
-    drinking = [row for row in found if row["whole"] == "DrinkFromMug"]
-    assert [(row["action"], row["times"]) for row in drinking] == [
-        *(("MoveObj", 3), ("MoveObjTo", 6), ("Reach", 3), ("ResumePosture", 3), ("TouchWith", 3))
-    ]
-    assert {row["whole"] for row in found} == {"DrinkFromMug", "Strange"}
-    wholes = {row["whole"] for row in known.ask("touching", object="container")}
-    assert wholes >= {"DrinkFromMug", "PickUpWithBothHands", "Strange"}
-    found = extended.ask("touching", object="mug")
-    assert [tuple(row.values()) for row in found if row["whole"] == "DrinkFromMug"] == [
-        (name, "DrinkFromMug", 6 if name == "MoveObjTo" else 3)
-        for name in sorted(set(SEQUENCES["DrinkFromMug"]))
-    ]
-
-
-def test_which_whole_actions_move_something_to_a_table(
-    known: Actionary, extended: Actionary
-) -> None:
-    found = known.ask("goal", goal="table")
-    assert {row["whole"] for row in found} == {"DrinkFromMug"}
-    assert [row["performer"] for row in found] == PERFORMERS
-    assert known.ask("goal", goal="furniture") == found
-    assert [(row["whole"], row["performer"]) for row in extended.ask("goal", goal="table")] == [
-        (whole, each) for whole in ("DrinkFromMug", "PickUpWithBothHands") for each in PERFORMERS
-    ]
-
-
-def test_what_must_hold_before_an_action(known: Actionary, extended: Actionary) -> None:
-    def needed(actionary: Actionary, action: str) -> list[tuple[object, object]]:
-        found = actionary.ask("before", action=action)
-        return [(r["condition"], r["otherwise"]) for r in found if r["why"] == "preparation"]
-
-    assert needed(known, "MoveObjTo") == [("contact(EE, obj1)", "Reach(obj1)")]
-    able = [r["condition"] for r in known.ask("before", action="MoveObjTo")]
-    assert "capable(agent, MoveObjTo)" in able
-    assert needed(extended, "Drink") == [
-        ("contact(EE, obj1)", "Reach(obj1)"),
-        ("contact(obj1, obj2)", "MoveObjTo(obj1 obj2)"),
-    ]
-
-
-@pytest.mark.parametrize("rules", ["known", "extended"])
-def test_where_a_mug_was_grasped_and_what_was_looked_at(
-    rules: str, request: pytest.FixtureRequest
-) -> None:
-    if rules == "known":
-        seen = request.getfixturevalue("five_by_three")
-        actionary = Actionary.in_memory()
-        for each in (*seen, with_unknown()):
-            actionary.add(each)
-    else:
-        actionary = request.getfixturevalue("extended")
-        seen = request.getfixturevalue("extended_five_by_three")
-    places = [
-        (each.capture, place)
-        for each in (*seen, with_unknown())
-        for place in each.locations
-        if place.action == "Reach"
-    ]
-    found = actionary.ask("grasped", object="mug", purpose="Drink")
-    assert {row["observation"]: (row["x"], row["y"], row["z"]) for row in found} == {
-        capture: place.goal_nlt.position
-        for capture, place in places
-        if capture.startswith("drink") and place.goal_nlt
-    }
-    assert {row["ee"] for row in found} == {"right_hand"}
-    looked = actionary.ask("looked_at", action="Reach")
-    assert {(row["observation"], row["seen"]) for row in looked} == {
-        (capture, place.seen) for capture, place in places if place.v_nlt
-    }
-
-
-def test_who_drank_and_how_long_it_took(known: Actionary) -> None:
-    found = known.ask("performers", action="DrinkFromMug")
-    assert [row["performer"] for row in found] == PERFORMERS
-    for row in found:
-        who = next(each for each in motions.PERFORMERS if each.name == row["performer"])
-        lasted = motions.drink_from_mug(who).truth.duration_s
-        assert abs(float(row["seconds"] or 0) - lasted) < 0.02
-
-
-def test_what_is_unknown_is_only_what_no_rule_names(known: Actionary) -> None:
-    found = known.ask("unknown")
-    assert [(row["start"], row["end"], row["moved"], row["nearest"]) for row in found] == [
-        ("011", "110", "10", "MoveObj"),
-        ("011", "110", "10", "MoveObjTo"),
-    ]
-    unexplained = known.ask("unexplained")
-    assert [(row["observation"], row["first"], row["last"]) for row in unexplained] == [
-        ("Strange", 50, 120)
-    ]
-
-
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.7, 0.9])
 def test_the_world_at_a_time_has_the_contacts_that_truly_were(
     known: Actionary, extended: Actionary, share: float
@@ -290,21 +196,6 @@ def test_relations_of_allen_between_the_hands_are_those_observed(
         }
     both = known.ask("allen", action="PickUpWithBothHands")
     assert len(both) == sum(len(each.complex_par.relations) for each in lifted)
-
-
-def test_observations_and_notices_are_listed(
-    known: Actionary, five_by_three: tuple[Observation, ...]
-) -> None:
-    found = known.ask("observations")
-    assert len(found) == len(five_by_three) + 1
-    assert {row["whole"] for row in found} == {*ACTIONS, "Strange"}
-    assert len(known.ask("observations", performer="child")) == len(ACTIONS)
-    counted = {row["action"]: row["times"] for row in known.ask("actions")}
-    assert counted == {
-        **{"MoveObj": 12, "MoveObjTo": 6, "Reach": 19, "ResumePosture": 12},
-        **{"Touch": 6, "TouchWith": 15},
-    }
-    assert len(known.ask("notices")) == sum(len(each.notices) for each in five_by_three)
 
 
 def test_an_action_is_one_and_the_same_whoever_performs_it(
@@ -362,44 +253,6 @@ def test_where_bodies_are_and_go(
     }
     off = extended.ask("where", preposition="off", body="box")
     assert Counter((r["action"], r["body"]) for r in off) == {("Lift", "box"): 6}
-
-
-def test_borders_say_what_happens_there(extended: Actionary) -> None:
-    """A Drink ends where the mug leaves the head; a Lift ends where the box turns back down."""
-    query = (
-        "SELECT DISTINCT ?action ?kind ?body ?other WHERE {{ ?s capar:action/capar:name ?action ; "
-        "capar:endsWith ?b . ?b capar:borderKind/capar:name ?kind ; capar:body/capar:name ?body ; "
-        "capar:other/capar:name ?other FILTER(?action = '{0}') }}"
-    )
-    for expected in (("Drink", "ends", "mug", "head"), ("Lift", "reverses", "box", "box")):
-        found = extended.query(query.format(expected[0])).plain()
-        assert [tuple(row.values()) for row in found] == [expected]
-
-
-def test_what_was_done_with_both_hands(
-    extended: Actionary, extended_five_by_three: tuple[Observation, ...]
-) -> None:
-    """Every performer holds, lifts, lowers and holds the box with both hands, and nothing else."""
-    found = extended.ask("both_hands")
-    done: dict[str, list[str]] = {}
-    for row in found:
-        done.setdefault(str(row["observation"]), []).append(str(row["action"]))
-    seen = [each for each in extended_five_by_three if each.joint]
-    assert sorted(done) == sorted(each.capture for each in seen)
-    assert list(done.values()) == [["Touch", "Lift", "Lower", "TouchWith"]] * 3
-    assert {row["ees"] for row in found} == {"left_hand right_hand"}
-    assert extended.ask("both_hands", object="box") == found
-    allen = extended.ask("allen", action="PickUpWithBothHands")
-    equal = [str(r["first"]).split()[-1] for r in allen if r["relation"] == "equals"]
-    assert Counter(equal) == dict.fromkeys(SEQUENCES["PickUpWithBothHands"], len(PERFORMERS))
-    lifts = {
-        (each.capture, joint.start_s, joint.end_s)
-        for each in seen
-        for joint in each.joint
-        if joint.name == "Lift"
-    }
-    asked = extended.ask("both_hands", action="Lift")
-    assert {(r["observation"], r["begins"], r["ends"]) for r in asked} == lifts
 
 
 def test_a_wrong_parameter_says_which_exist() -> None:

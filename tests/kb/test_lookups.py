@@ -4,12 +4,10 @@ from dataclasses import replace
 
 import motions
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 
 from capar.model.observation import Observation
-from capar.model.par import Ipar, Nlt, Upar
+from capar.model.par import Ipar, Upar
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
 from kb.errors import StoreError
@@ -80,15 +78,3 @@ def test_rdflib_reads_the_same_actionary(actionary: Actionary) -> None:
     name = "https://w3id.org/capar/ontology#Segment"
     rows = actionary.dataset().query(f"SELECT ?s WHERE {{ ?s a <{name}> }}")
     assert len(list(rows)) == 6
-
-
-numbers = st.floats(-10, 10, allow_nan=False)
-
-
-@given(st.tuples(numbers, numbers, numbers), st.tuples(numbers, numbers, numbers, numbers))
-def test_mirroring_twice_is_no_mirroring(
-    place: tuple[float, float, float], turn: tuple[float, float, float, float]
-) -> None:
-    value = Nlt(place, turn)
-    assert value.mirrored().mirrored() == value
-    assert value.mirrored().position[::2] == value.position[::2]

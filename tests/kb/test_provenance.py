@@ -14,7 +14,6 @@ from capar.pipelines.observation import observe
 from capar_rules.engine.profiles import profile
 from capar_rules.pars.pars import naming_rules
 from kb.actionary import Actionary
-from kb.exchange import bring_in, export, read
 from kb.store.names import GRAPHS
 
 
@@ -56,16 +55,6 @@ def test_a_run_says_when_and_from_which_files_and_goes_with_its_observation(
     assert len(values(actionary, asked)) == 2
     actionary.forget(made.capture)
     assert actionary.store.graph(GRAPHS["runs"]) == []
-
-
-def test_an_observation_says_nothing_of_its_run() -> None:
-    source, target = Actionary.in_memory(), Actionary.in_memory()
-    source.add(drink_from_mug())
-    text = export(source.store, "nquads", observation="DrinkFromMug")
-    assert b"/run/" not in text
-    bring_in(target.store, read(text, "nquads"))
-    assert export(target.store, "nquads", observation="DrinkFromMug") == text
-    assert b"/run/" in export(source.store, "nquads", runs=True)
 
 
 def test_the_calibration_is_stored_whole() -> None:

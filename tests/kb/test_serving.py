@@ -14,7 +14,7 @@ from pyoxigraph import QueryResultsFormat, RdfFormat, parse, parse_query_results
 from kb.actionary import Actionary
 from kb.exchange import FORMATS, export, read
 from kb.queries.questions import questions
-from kb.serving import ActionaryServer, Request, Response, Service, is_loopback
+from kb.serving import ActionaryServer, Request, Response, Service
 
 TOKEN = "a secret"
 NAMES = "SELECT ?name { ?o a capar:Observation ; rdfs:label ?name }"
@@ -186,14 +186,6 @@ def test_the_server_answers_on_loopback_and_to_its_own_name_alone(served: str) -
     head = urllib.request.Request(f"{served}openapi.json", method="HEAD")
     with urllib.request.urlopen(head) as reply:
         assert (reply.read(), int(reply.headers["Content-Length"]) > 0) == (b"", True)
-
-
-@pytest.mark.parametrize(
-    ("host", "own"),
-    [("localhost", True), ("127.0.0.1", True), ("[::1]", True), ("0.0.0.0", False), ("a.b", False)],
-)
-def test_what_is_of_this_computer_alone(host: str, own: str) -> None:
-    assert is_loopback(host) is own
 
 
 def test_a_port_that_is_taken_is_told(served: str) -> None:

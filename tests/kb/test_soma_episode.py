@@ -2,9 +2,8 @@
 
 import pytest
 from observations import drink_from_mug
-from pyoxigraph import Literal, NamedNode, RdfFormat, Triple, parse
+from pyoxigraph import Literal, NamedNode, Triple, parse
 
-from capar.model.errors import UnknownNameError
 from kb.actionary import Actionary
 from kb.exchange import FORMATS, VOCABULARIES, episode, export_episode
 from kb.store.statements import TYPE
@@ -70,23 +69,9 @@ def test_a_contact_is_an_interval_that_is_classified_as_contact(drunk: Actionary
         assert len(of(stated, DUL + "hasTimeInterval")[state]) == 1
 
 
-def test_nothing_is_both_an_action_and_a_thing_or_a_description(drunk: Actionary) -> None:
-    apart = [{DUL + "Action", SOMA + "State"}, {DUL + "PhysicalObject", DUL + "Agent"}]
-    apart += [{DUL + "TimeInterval"}, {DUL + "Task", SOMA + "ContactState"}, {SOMA + "Episode"}]
-    for kinds in of(episode(drunk.store, NAME), TYPE.value).values():
-        own = {each.value for each in kinds if isinstance(each, NamedNode)}
-        assert sum(bool(own & each) for each in apart) <= 1
-
-
 @pytest.mark.parametrize("form", FORMATS)
 def test_it_says_the_same_in_every_format(drunk: Actionary, form: str) -> None:
     data = export_episode(drunk.store, form, NAME)
     read = {each.triple for each in parse(data, format=FORMATS[form])}
     assert read == set(episode(drunk.store, NAME))
     assert export_episode(drunk.store, form, NAME) == data
-
-
-def test_an_observation_that_is_not_there_is_told() -> None:
-    with pytest.raises(UnknownNameError, match="Nothing"):
-        export_episode(Actionary.in_memory().store, "turtle", "Nothing")
-    assert RdfFormat.RDF_XML in FORMATS.values()

@@ -14,7 +14,6 @@ from observations import drink_from_mug
 from capar.model.errors import CaparError, ParError
 from capar.model.locations import UNIT_M, SampledTrack, sampled_track
 from kb.actionary import Actionary
-from kb.errors import QueryError
 from kb.queries.questions import check_known, question
 from kb.store.statements import LiteralError, track, track_of
 
@@ -91,11 +90,6 @@ def test_a_body_may_be_given_by_what_it_is(turning: Actionary) -> None:
     assert [row["x"] for row in rows] == [pytest.approx(1.0)]
 
 
-def test_a_wrong_number_of_arguments_is_told(turning: Actionary) -> None:
-    with pytest.raises(QueryError, match="capar:speed takes 3 arguments, not 2"):
-        turning.query("SELECT (capar:speed('mug', 1) AS ?v) WHERE {}")
-
-
 @pytest.mark.parametrize("kind", STORES)
 def test_every_store_opens_tracks(
     kind: str, tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest
@@ -143,18 +137,3 @@ def test_where_a_body_was_while_it_was_lost_is_told_with_when(turning: Actionary
     assert turning.ask("place", **asked) == []
     with pytest.raises(CaparError, match=r"lost it from 1\.50 to 2\.00 s"):
         check_known(turning.store, question("place"), asked)
-
-
-@given(st.lists(st.booleans(), min_size=1, max_size=30), st.floats(0.0, 1.0))
-def test_a_body_is_lost_between_the_samples_that_saw_it(seen: list[bool], share: float) -> None:
-    places = np.where(np.array(seen)[:, None], 1.0, np.nan) * np.ones(3)
-    known = sampled_track("mug", STEP_S, places)
-    time_s = share * (len(seen) - 1) * STEP_S
-    gap_s = known.lost_around(time_s)
-    sample = time_s / STEP_S
-    beside = {int(np.floor(sample)), min(int(np.ceil(sample)), len(seen) - 1)}
-    assert (gap_s is None) == all(seen[each] for each in beside)
-    if gap_s is not None:
-        assert gap_s[0] <= time_s <= gap_s[1]
-        first, last = (round(end / STEP_S) for end in gap_s)
-        assert not any(seen[first + 1 : last])

@@ -2,20 +2,18 @@
 
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from observations import drink_from_mug
 from pyoxigraph import NamedNode
-from pyoxigraph import Store as Oxigraph
 
 from kb.actionary import Actionary
 from kb.errors import QueryError, StoreError, TimeLimitError
 from kb.store import sparql
 from kb.store.answers import Answer
-from kb.store.stores import user_message
 
 ENDLESS = "SELECT (COUNT(*) AS ?n) WHERE { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i . ?j ?k ?l }"
 
@@ -105,11 +103,6 @@ def test_the_word_may_stand_where_it_calls_nothing(text: str) -> None:
     assert sparql.prepare(text).endswith(text)
 
 
-def test_a_query_that_is_none_says_where(actionary: Actionary) -> None:
-    with pytest.raises(QueryError, match="1:"):
-        actionary.query("SELECT ?x WHERE {")
-
-
 OBSERVED = "https://w3id.org/capar/data/observation/DrinkFromMug"
 COUNTED = "SELECT (COUNT(*) AS ?n) {} WHERE {{ {} }}"
 EVERY, GRAPHS = "?s ?p ?o", "GRAPH ?g { ?s ?p ?o }"
@@ -164,10 +157,6 @@ def test_a_time_limit_is_a_positive_number(seconds: float) -> None:
         STORE.query("ASK {}", seconds=seconds)
 
 
-def test_a_time_limit_may_be_very_long() -> None:
-    assert STORE.query("ASK {}", seconds=1e12).boolean is True
-
-
 def test_a_slip_in_a_functions_name_is_told_which_there_are(actionary: Actionary) -> None:
     actionary.add(drink_from_mug())
     with pytest.raises(QueryError) as slip:
@@ -177,42 +166,6 @@ def test_a_slip_in_a_functions_name_is_told_which_there_are(actionary: Actionary
     assert "Did you mean 'capar:element'?" in str(slip.value)
     with pytest.raises(QueryError, match="no function 'urn:none'; there are: capar:distance, "):
         actionary.query("CONSTRUCT { ?s ?p ?x } WHERE { ?s ?p ?o BIND(<urn:none>(?o) AS ?x) }")
-
-
-@pytest.mark.parametrize("text", ["", " \n", "# only a comment", "# one\n# two\n"])
-def test_an_empty_query_is_called_empty(text: str) -> None:
-    with pytest.raises(QueryError, match="the query is empty"):
-        sparql.prepare(text)
-
-
-WHOLE = (
-    "SELECT ?s WHERE { ?s ?p ?o OPTIONAL { ?s a ?k } FILTER(?s > ?o) } ORDER BY ?s",
-    "ASK { { ?s ?p ?o } UNION { GRAPH ?g { ?s ?p ?o } } }",
-    "CONSTRUCT { ?s ?p ?o } WHERE { ?s ?p ?o }",
-    "SELECT ?s { ?s ?p ?o } GROUP BY ?s",
-)
-
-
-def cuts() -> Iterator[str]:
-    """Queries that lack one piece, so that they are none."""
-    for whole in WHOLE:
-        pieces = [each.text for each in sparql.tokens(whole)]
-        for at in range(len(pieces)):
-            yield "".join(pieces[:at] + pieces[at + 1 :])
-            yield "".join(pieces[:at])
-
-
-def test_what_is_missing_is_never_something_that_is_refused() -> None:
-    store, told = Oxigraph(), []
-    for text in filter(str.strip, cuts()):
-        try:
-            store.query(text)
-        except SyntaxError as error:
-            told.append((text, str(error), user_message(str(error))))
-    assert any("SERVICE" in raw for _, raw, _ in told)
-    for text, _, said in told:
-        assert "SERVICE" not in said and "LATERAL" not in said, text
-        assert "[_]" not in said and not said.endswith(("of", "expected", ",")), text
 
 
 @given(st.text(max_size=60))

@@ -86,20 +86,10 @@ def test_readers_go_on_while_a_writer_writes_much(tmp_path: Path) -> None:
         assert seen == 12
 
 
-def test_reading_where_nothing_is_says_what_makes_one(tmp_path: Path) -> None:
-    with pytest.raises(StoreError, match="no Actionary there; `capar observe` makes one"):
-        Actionary.open(tmp_path / "nothing", read_only=True)
-
-
 def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("no folder")
     with pytest.raises(StoreError, match="file"):
         Actionary.open(tmp_path / "file")
-
-
-def test_a_server_that_does_not_answer_is_named() -> None:
-    with pytest.raises(StoreError, match=r"http://127\.0\.0\.1:9/query.*no server answers"):
-        Actionary.open("http://127.0.0.1:9")
 
 
 def test_ten_kills_lose_nothing_and_tear_nothing(tmp_path: Path) -> None:

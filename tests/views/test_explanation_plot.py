@@ -6,7 +6,7 @@ import pytest
 from capar.model.errors import FileError
 from capar.pipelines.explanation import Explained, explained, explanation_plot
 from capar.views.explanation_plot import draw_explanation
-from capar.views.explanation_text import note, reason_tree
+from capar.views.explanation_text import reason_tree
 from capar_rules.engine.profiles import profile
 
 
@@ -51,17 +51,6 @@ def test_the_same_explanation_is_drawn_in_the_same_bytes(seen: Explained, tmp_pa
     assert drawn[0] == drawn[1]
     with pytest.raises(FileError, match="no picture format"):
         draw_explanation(explanation_plot(seen, told), tmp_path / "why.bmp")
-
-
-def test_each_sentence_of_the_tree_stands_once_and_a_line_says_where_its_reasons_stand(
-    seen: Explained,
-):
-    for told in seen.explain(seen.observation.segments):
-        nodes = list(reason_tree(told, seen.observation).walk())
-        sentences = [each.sentence for each in nodes if each.because]
-        assert len(sentences) == len(set(sentences))
-        assert any(each.repeated for each in nodes)
-        assert all(note(each).endswith("above") for each in nodes if each.repeated)
 
 
 def test_joint_actions_are_those_that_were_observed():

@@ -60,17 +60,6 @@ def test_a_low_name_covers_no_other_bar_that_lacks_its_name(parts: list[tuple[fl
         assert not any(low.covers(each.middle_s) for each in others)
 
 
-@given(lengths)
-def test_without_rows_above_names_are_inside_or_nowhere(parts: list[tuple[float, str]]) -> None:
-    assert {each.row for each in placed(parts, rows_above=0)} <= {0, -1}
-
-
 def test_a_wide_bar_holds_its_name_and_a_narrow_one_between_wide_ones_bears_it_above() -> None:
     out = placed([(20.0, "Reach"), (1.0, "Lift"), (20.0, "Reach")])
     assert [each.row for each in out] == [0, 1, 0]
-
-
-def test_longer_and_larger_text_is_wider() -> None:
-    assert width_in("ReachReach", points=9.0) > width_in("Reach", points=9.0) > 0.0
-    assert width_in("Reach", points=18.0) > 1.9 * width_in("Reach", points=9.0)
-    assert width_in(" ", points=9.0) == 0.0

@@ -9,9 +9,8 @@ import pytest
 from matplotlib.image import imread
 from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 
-from capar.model.errors import FileError
 from capar.model.observation import Observation
-from capar.views.picture import LOST, LOST_NOTE, Painter, Speeds, draw, rows
+from capar.views.picture import Painter, Speeds, draw, rows
 
 HEADS = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
@@ -78,11 +77,6 @@ def test_the_picture_is_neither_empty_nor_cut(
     assert (edges == 1.0).all(), "ink on the edge of the picture"
 
 
-def test_a_folder_that_is_not_there_is_an_error_of_the_user(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="cannot be written"):
-        draw(drink_from_mug(), {}, path=tmp_path / "nowhere" / "a.png")
-
-
 def test_a_kind_of_action_has_the_same_colour_in_every_picture() -> None:
     """Whatever else there is, and in whatever order it is met."""
     seen = drink_from_mug()
@@ -96,11 +90,3 @@ def test_a_kind_of_action_has_the_same_colour_in_every_picture() -> None:
     assert len(shared) >= 3
     assert all(looks[0][kind] == each[kind] for each in looks for kind in shared)
     assert len(set(looks[0].values())) == len(looks[0])
-
-
-def test_hatching_means_lost_tracking_alone() -> None:
-    for seen in (drink_from_mug(), pick_up_with_both_hands(), with_unknown()):
-        painter = Painter(rows(seen, {}), seen.duration_s, 9.0)
-        assert all("hatch" not in look for _, look in painter.legend)
-    assert "hatch" in LOST
-    assert LOST_NOTE.startswith("hatched: a body of that row was not tracked")

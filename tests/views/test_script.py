@@ -93,25 +93,6 @@ def test_a_upar_has_the_four_functions_of_the_thesis() -> None:
             assert [arg.arg for arg in each.args.args] == ["self", par.agent, *par.objects]
 
 
-def test_move_obj_to_prepares_by_reaching_as_in_thesis_4_6_1_1() -> None:
-    (par,) = [each for each in drink_from_mug().upars if each.name == "MoveObjTo"]
-    test = functions(script(par))["preparatory_spec"].body[0]
-    assert isinstance(test, ast.If)
-    assert ast.unparse(test.test) == "not contact(EE, obj1)"
-    assign = test.body[0]
-    assert isinstance(assign, ast.Assign)
-    reach = ("Reach", {"agents": "<agent>", "objects": ("<obj1>",)})
-    assert read(assign.value) == {"PRIMITIVE": reach}
-
-
-def test_the_end_relations_are_the_termination_conditions() -> None:
-    (par,) = [each for each in drink_from_mug().upars if each.name == "MoveObjTo"]
-    test = functions(script(par))["termination_conditions"].body[0]
-    assert isinstance(test, ast.If)
-    expected = "contact(EE, obj1) and (not contact(EE, obj2)) and contact(obj1, obj2)"
-    assert ast.unparse(test.test) == expected
-
-
 @given(st.text(max_size=30), st.text(max_size=30), st.text(max_size=30))
 def test_no_name_of_a_capture_becomes_code(name: str, thing: str, purpose: str) -> None:
     par = drink_from_mug().complex_par

@@ -21,7 +21,7 @@ from matplotlib.image import imread
 
 from capar.cli import main
 from capar.pipelines.observation import observe
-from capar.views.viewer.snapshot import Box, Labelled, meet, place_labels, snapshot
+from capar.views.viewer.snapshot import Box, meet, place_labels, snapshot
 from capar.views.viewer.stage import stage
 from capar.views.viewer.web_page import web_page
 
@@ -190,18 +190,13 @@ SCENES = 25
 bodies = st.lists(st.tuples(places, st.floats(0.05, 0.6), st.floats(0.3, 1.0)), max_size=12)
 
 
-def labelled(place: tuple[float, float], half: float, wide: float) -> Labelled:
-    x, y = place
-    box: Box = (x - half, x + half, y - half, y + half)
-    return Labelled(box, (wide, 0.17))
-
-
 @settings(max_examples=SCENES)
 @given(bodies)
 def test_no_name_stands_on_another_or_leaves_the_page(
     parts: list[tuple[tuple[float, float], float, float]],
 ) -> None:
-    boxes = place_labels([labelled(*part) for part in parts], PAGE)
+    drawn: list[Box] = [(x - half, x + half, y - half, y + half) for (x, y), half, _ in parts]
+    boxes = place_labels(drawn, [(wide, 0.17) for *_, wide in parts], PAGE)
     for one, other in combinations(boxes, 2):
         assert not meet(one, other)
     for box in boxes:

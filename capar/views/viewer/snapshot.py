@@ -1,7 +1,6 @@
 """One moment of a capture as a picture: bodies from obliquely above, in parallel projection."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -21,127 +20,58 @@ if TYPE_CHECKING:
 Box = tuple[float, float, float, float]
 """Left, right, bottom and top, from the lower left corner of the picture [inches]."""
 
-Place = tuple[float, float]
-"""Rightward and upward from that corner [inches]."""
-
 LARGE_IN = 1.1
 """A body that is wider and higher in the picture than this bears its name [inches]."""
 
-NEAR_IN, RINGS, ANGLES = 0.08, 16, 24
-"""Between rings of places around a body [inches]; how many rings, and places on each."""
+RINGS_IN = np.arange(0.08, 6.0, 0.08)
+"""How far from a body's edge its name may stand, in the order in which it is tried [inches]."""
 
-GAP_IN = 0.02
-"""Least room between names [inches]."""
-
-SAMPLES = 24
-"""At so many places of a line it is told what it crosses."""
-
-MET, CROSSED, COVERED, FAR = 1000.0, 40.0, 12.0, 3.0
-"""How bad it is to stand on a name, on a line or a name's line on it, to cover a body whole, and to
-be an inch away."""
+ANGLES = np.pi / 2.0 + np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
 
 
-@dataclass(frozen=True)
-class Labelled:
-    """A body that gets a name: what it covers in the picture, and how large its name is."""
-
-    box: Box
-    size: tuple[float, float]
-
-    @property
-    def middle(self) -> Place:
-        """The middle of what it covers [inches]."""
-        return (self.box[0] + self.box[1]) / 2.0, (self.box[2] + self.box[3]) / 2.0
-
-    @property
-    def large(self) -> bool:
-        """Whether names may stand on it."""
-        return min(self.box[1] - self.box[0], self.box[3] - self.box[2]) > LARGE_IN
-
-
-def place_labels(bodies: Sequence[Labelled], page: tuple[float, float]) -> list[Box]:
+def place_labels(
+    bodies: Sequence[Box], sizes: Sequence[tuple[float, float]], page: tuple[float, float]
+) -> list[Box]:
     """What the name of each body covers [inches], in turn from the smallest body on.
 
+    A name stands on a large body, else as near to its body as it covers no other name and no
+    small body.
+
     Args:
-        bodies: What is named.
-        page: Width and height of the picture [inches].
+        bodies: What each body covers in the picture.
+        sizes: Width and height of each name.
+        page: Width and height of the picture.
     """
-    small = [body.box for body in bodies if not body.large]
-    placed: dict[int, Box] = {}
-    lines: list[Float[np.ndarray, "samples 2"]] = []
-    for index in sorted(range(len(bodies)), key=lambda index: _area(bodies[index].box)):
-        body = bodies[index]
-        tries = [box for box in _tries(body) if _on(box, page)] or [_around(body, body.middle)]
-        costs = [_cost(box, body, small, list(placed.values()), lines) for box in tries]
-        placed[index] = tries[int(np.argmin(costs))]
-        lines.append(leader(placed[index], body.middle))
-    return [placed[index] for index in range(len(bodies))]
+    extents = [(box[1] - box[0], box[3] - box[2]) for box in bodies]
+    large = [min(each) > LARGE_IN for each in extents]
+    taken = [box for box, big in zip(bodies, large, strict=True) if not big]
+    names: dict[int, Box] = {}
+    for index in sorted(range(len(bodies)), key=lambda index: np.prod(extents[index])):
+        left, right, bottom, top = bodies[index]
+        wide, tall = sizes[index]
+        centre = np.array([left + right, bottom + top]) / 2.0
+        half = [0.0 if large[index] else min(each, LARGE_IN) / 2.0 for each in extents[index]]
+        reach = np.array([half[0] + wide / 2.0, half[1] + tall / 2.0])
+        directions = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
+        places = (centre + directions * (reach + ring) for ring in RINGS_IN)
+        tries = [each for ring in places for each in ring]
+        around = [
+            (x - wide / 2, x + wide / 2, y - tall / 2, y + tall / 2)
+            for x, y in ([centre, *tries] if large[index] else [*tries, centre])
+        ]
+        inside = [
+            e for e in around if min(e[0], e[2]) >= 0.0 and e[1] <= page[0] and e[3] <= page[1]
+        ]
+        free = (e for e in inside if not any(meet(e, other) for other in names.values()))
+        best = list(free) or inside or around
+        clear = (e for e in best if not any(meet(e, other) for other in taken))
+        names[index] = next(clear, best[0])
+    return [names[index] for index in range(len(bodies))]
 
 
-def leader(box: Box, place: Place) -> Float[np.ndarray, "samples 2"]:
-    """Places on the line from a body to its name; where it stands on the body, one place."""
-    start = np.array(place)
-    end = np.array([np.clip(place[0], *box[:2]), np.clip(place[1], *box[2:])])
-    return np.asarray(start + np.linspace(0.0, 1.0, SAMPLES)[:, None] * (end - start))
-
-
-def _tries(body: Labelled) -> list[Box]:
-    """Places of its name: on it if it is large, and on rings around it."""
-    half = (
-        0.5 * (0.0 if body.large else min(body.box[1] - body.box[0], LARGE_IN)),
-        0.5 * (0.0 if body.large else min(body.box[3] - body.box[2], LARGE_IN)),
-    )
-    out = [_around(body, body.middle)] if body.large else []
-    for ring in range(1, RINGS + 1):
-        for angle in np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False) + np.pi / 2.0:
-            x = (half[0] + body.size[0] / 2.0 + NEAR_IN * ring) * float(np.cos(angle))
-            y = (half[1] + body.size[1] / 2.0 + NEAR_IN * ring) * float(np.sin(angle))
-            out.append(_around(body, (body.middle[0] + x, body.middle[1] + y)))
-    return out
-
-
-def _around(body: Labelled, place: Place) -> Box:
-    wide, tall = body.size[0] / 2.0, body.size[1] / 2.0
-    return place[0] - wide, place[0] + wide, place[1] - tall, place[1] + tall
-
-
-def _on(box: Box, page: tuple[float, float]) -> bool:
-    return box[0] >= 0.0 and box[2] >= 0.0 and box[1] <= page[0] and box[3] <= page[1]
-
-
-def _cost(
-    box: Box,
-    body: Labelled,
-    small: Sequence[Box],
-    names: Sequence[Box],
-    lines: Sequence[Float[np.ndarray, "samples 2"]],
-) -> float:
-    wide = box[0] - GAP_IN, box[1] + GAP_IN, box[2] - GAP_IN, box[3] + GAP_IN
-    own = leader(box, body.middle)
-    crossed = sum(_crosses(line, wide) for line in lines)
-    crossed += sum(_crosses(own, name) for name in names)
-    return (
-        MET * sum(meet(wide, name) for name in names)
-        + CROSSED * crossed
-        + COVERED * sum(_shared(box, other) / max(_area(other), 1e-3) for other in small)
-        + FAR * distance(box, body.middle)
-    )
-
-
-def _crosses(line: Float[np.ndarray, "samples 2"], box: Box) -> bool:
-    x, y = line.T
-    return bool(((x > box[0]) & (x < box[1]) & (y > box[2]) & (y < box[3])).any())
-
-
-def _area(box: Box) -> float:
-    return (box[1] - box[0]) * (box[3] - box[2])
-
-
-def _shared(one: Box, other: Box) -> float:
-    """The area that two boxes have in common."""
-    wide = min(one[1], other[1]) - max(one[0], other[0])
-    tall = min(one[3], other[3]) - max(one[2], other[2])
-    return max(wide, 0.0) * max(tall, 0.0)
+def meet(one: Box, other: Box) -> bool:
+    """Whether two boxes have a place in common."""
+    return one[0] <= other[1] and other[0] <= one[1] and one[2] <= other[3] and other[2] <= one[3]
 
 
 EYE = np.array([0.9, -1.1, 0.7])
@@ -211,7 +141,10 @@ def snapshot(shown: Stage, time_s: float, path: Path) -> None:
 def _paint(axes: "Axes", shown: Stage, frame: int) -> None:
     from matplotlib.collections import PolyCollection
 
-    across, up, towards = _view()
+    towards = EYE / np.linalg.norm(EYE)
+    across = np.cross([0.0, 0.0, 1.0], towards)
+    across /= np.linalg.norm(across)
+    up = np.cross(towards, across)
     known = [body for body in shown.bodies if not np.isnan(body.positions[frame, 0])]
     patches, shades, depths = [np.zeros((0, 3, 2))], [np.zeros((0, 4))], [np.zeros(0)]
     for body in known:
@@ -266,31 +199,24 @@ def _labels(
     page = SIZE_IN[0], SIZE_IN[1] * PAINTED
     corner = np.array([axes.get_xlim()[0], axes.get_ylim()[0]])
     scale = page[0] / float(np.ptp(axes.get_xlim()))
-    bodies = []
+    boxes: list[Box] = []
     for index in named:
         low, high = (scale * (end(covered[index], axis=0) - corner) for end in (np.min, np.max))
-        wide = width_in(known[index].label, points=LABEL_PT) + 0.07
-        box = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
-        bodies.append(Labelled(box, (wide, 1.6 * LABEL_PT / POINTS_PER_INCH)))
-    for index, body, box in zip(named, bodies, place_labels(bodies, page), strict=True):
-        line = leader(box, body.middle) / scale + corner
-        if not body.large:
+        boxes.append((float(low[0]), float(high[0]), float(low[1]), float(high[1])))
+    tall = 1.6 * LABEL_PT / POINTS_PER_INCH
+    sizes = [(width_in(known[each].label, points=LABEL_PT) + 0.07, tall) for each in named]
+    for index, body, box in zip(named, boxes, place_labels(boxes, sizes, page), strict=True):
+        centre = np.array([body[0] + body[1], body[2] + body[3]]) / 2.0
+        if min(body[1] - body[0], body[3] - body[2]) <= LARGE_IN:
+            nearest = np.clip(centre, [box[0], box[2]], [box[1], box[3]])
+            line = np.stack([centre, nearest]) / scale + corner
             axes.plot(*line.T, color="#555555", linewidth=0.6, zorder=2.5)
-        middle = np.array([box[0] + box[1], box[2] + box[3]]) / 2.0
-        x, y = middle / scale + corner
+        x, y = np.array([box[0] + box[1], box[2] + box[3]]) / 2.0 / scale + corner
         axes.text(
             x, y, known[index].label, fontsize=LABEL_PT,
             ha="center", va="center", zorder=5,
             bbox={"boxstyle": "square,pad=0.1", "facecolor": "#ffffffd0", "linewidth": 0},
         )  # fmt: skip
-
-
-def _view() -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
-    """Unit vectors to the right and upward in the picture, and out of it."""
-    towards = EYE / np.linalg.norm(EYE)
-    across = np.cross([0.0, 0.0, 1.0], towards)
-    across /= np.linalg.norm(across)
-    return across, np.cross(towards, across), towards
 
 
 def _triangles(body: StagedBody, frame: int) -> Float[np.ndarray, "triangles 3 3"]:
@@ -335,14 +261,3 @@ def _frame(
     axes.set_xlim(middle_x - ratio * height / 2.0, middle_x + ratio * height / 2.0)
     axes.set_ylim(middle_y - height / 2.0, middle_y + height / 2.0)
     axes.axis("off")
-
-
-def distance(box: Box, place: Place) -> float:
-    """How far a place is from a box [inches]."""
-    aside = max(box[0] - place[0], place[0] - box[1], 0.0)
-    return float(np.hypot(aside, max(box[2] - place[1], place[1] - box[3], 0.0)))
-
-
-def meet(one: Box, other: Box) -> bool:
-    """Whether two boxes have a place in common."""
-    return one[0] <= other[1] and other[0] <= one[1] and one[2] <= other[3] and other[2] <= one[3]

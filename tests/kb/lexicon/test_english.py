@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kb.lexicon.english import joined, name_of, noun, number, past, the, the_agent, times, words_of
+from kb.lexicon.english import name_of, number, past, the_agent, words_of
 
 
 @pytest.mark.parametrize(
@@ -26,12 +26,6 @@ from kb.lexicon.english import joined, name_of, noun, number, past, the, the_age
 )
 def test_a_verb_has_its_past(verb: str, form: str) -> None:
     assert past(verb) == form
-
-
-def test_names_are_said_as_nouns() -> None:
-    assert (noun("blue_cup"), the("blue_cup"), the("Anna")) == ("blue cup", "the blue cup", "Anna")
-    assert (the_agent("agent"), the_agent("subject0")) == ("the agent", "subject0")
-    assert [times(each) for each in (1, 2, 21)] == ["once", "twice", "twenty-one times"]
 
 
 @pytest.mark.parametrize(
@@ -60,13 +54,6 @@ def test_who_acts_has_an_article_only_with_a_word_for_people(
 def test_words_make_a_name_that_gives_them_back(words: list[str]) -> None:
     text = " ".join(words)
     assert words_of(name_of(text)) == text
-
-
-def test_lists_are_joined_as_in_a_sentence() -> None:
-    assert joined(["a"]) == "a"
-    assert joined(["a", "b"]) == "a and b"
-    assert joined(["a", "b", "c"]) == "a, b, and c"
-    assert joined(["a, b, and c", "d"]) == "a, b, and c, and d"
 
 
 @given(st.integers(0, 99))

@@ -10,7 +10,6 @@ import pytest
 
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from kb.lexicon.links import (
-    ThesisStatus,
     above,
     book_order,
     class_links,
@@ -41,22 +40,6 @@ def test_classes_stand_in_the_books_order_below_known_ones() -> None:
 def test_a_table_names_only_known_classes(name: str) -> None:
     for row in table(name):
         assert not row["class"] or row["class"] in levin_classes()
-
-
-def test_each_claim_has_its_sentence_and_reason() -> None:
-    assert len(thesis_claims()) == 24
-    for claim in thesis_claims():
-        assert claim.quote
-        assert claim.reason
-        assert claim.section in {"6", "6.1", "6.3"}
-
-
-def test_the_claims_say_what_the_thesis_says() -> None:
-    said = {(claim.levin, verb): claim.status for claim in thesis_claims() for verb in claim.verbs}
-    direct = {key for key, status in said.items() if status is ThesisStatus.DIRECT}
-    assert {("20", "touch"), ("40.3", "clap"), ("18.1", "hit"), ("39.1", "drink")} <= direct
-    assert said["17.1", "throw"] is ThesisStatus.EXTENSION
-    assert said["13.5.1", "catch"] is ThesisStatus.NOT
 
 
 @needs_shared
@@ -117,23 +100,6 @@ def test_a_judged_sense_has_the_gloss_by_which_it_was_judged(row: dict[str, str]
     )
 
 
-@pytest.mark.parametrize(
-    ("name", "number", "because"),
-    [
-        ("Turn", "26.6", "that class is of transformation"),
-        ("Shake", "22.3", "that class is of combining"),
-        ("Give", "13.1", "one person may give from hand to hand"),
-        ("Receive", "13.5.2", "one person may receive from hand to hand"),
-        ("Reach", "49", "Levin does not list reach there"),
-        ("PostureChange", "49", "Levin does not list move there"),
-    ],
-)
-def test_a_primitive_stands_in_no_class_that_means_something_else(
-    name: str, number: str, because: str
-) -> None:
-    assert number not in class_links(WORDS[name])[0], because
-
-
 @pytest.mark.skipif(not VERBNET.is_dir(), reason=f"no VerbNet 3.4 in {VERBNET}")
 def test_verbnet_lists_each_verb_in_the_class_that_we_give_it() -> None:
     rows = [(row["verb"], row["class"]) for row in table("motion_classes")]
@@ -157,11 +123,6 @@ def cover(folder: Path, stated: str) -> Path:
     return path
 
 
-def test_a_verb_a_class_and_a_sense_that_there_are_leave_no_doubt() -> None:
-    assert doubts("cover", ("9.8",), ("1", "cover%2:35:00::")) == ()
-    assert doubts("pick up", (), ()) == ()
-
-
 def test_each_unknown_is_told_with_what_is_near_it() -> None:
     verb, levin, sense = doubts("coverr", ("9.1", "99.9"), ("77",))
     assert verb.startswith("WordNet has no verb 'coverr'; the nearest are cover")
@@ -169,23 +130,8 @@ def test_each_unknown_is_told_with_what_is_near_it() -> None:
     assert sense == "WordNet has no sense 77 of 'coverr'"
 
 
-def test_a_known_verb_is_told_with_the_number_of_its_senses() -> None:
-    (number,) = doubts("cover", (), ("26", "77"))
-    assert number == "WordNet has no sense 77 of 'cover'; it has 1 to 26"
-    (key,) = doubts("cover", (), ("cover%2:35:77::",))
-    assert key.startswith("WordNet has no verb sense 'cover%2:35:77::'; the nearest are cover%2:35")
-
-
 def test_nothing_that_ships_is_in_doubt() -> None:
     assert doubts_of(primitive_words(primitive_files())) == ()
-
-
-def test_a_doubt_names_its_file_and_primitive(tmp_path: Path) -> None:
-    path = cover(tmp_path, 'verb("Cover", "coverr"). levin("Cover", "99.9"). sense("Cover", 77).')
-    found = doubts_of(primitive_words([path]))
-    assert len(found) == 3
-    for each in found:
-        assert each.startswith(f"{tmp_path.name}/cover.lp: Cover: ")
 
 
 def test_a_sense_is_stated_by_its_number_or_its_key(tmp_path: Path) -> None:
@@ -194,9 +140,3 @@ def test_a_sense_is_stated_by_its_number_or_its_key(tmp_path: Path) -> None:
     text = 'verb("Cover", "cover"). sense("Cover", "cover%2:35:01::").'
     (key,) = primitive_words([cover(tmp_path, text)])
     assert sense_links(key) == sense_links(number)
-
-
-def test_a_sense_that_there_is_not_counts_as_not_stated(tmp_path: Path) -> None:
-    (wrong,) = primitive_words([cover(tmp_path, 'verb("Cover", "cover"). sense("Cover", 77).')])
-    (bare,) = primitive_words([cover(tmp_path, 'verb("Cover", "cover").')])
-    assert sense_links(wrong) == sense_links(bare)

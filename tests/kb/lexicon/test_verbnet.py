@@ -11,7 +11,6 @@ from capar.model.errors import FileError
 from capar.pipelines.linguistic_report import answer_verb, primitive_files, primitive_words
 from kb.lexicon.loading import (
     every_verbnet_member,
-    has_source,
     load_verbnet,
     verbnet_class_of,
     verbnet_of,
@@ -93,15 +92,6 @@ def test_a_store_gives_back_what_was_put_in() -> None:
     assert [each.id for each in every_verbnet_member(store)] == ["prod-18.1", "prod-18.1-1"]
 
 
-def test_another_copy_takes_the_place_of_the_first() -> None:
-    store = open_store(None)
-    read = read_class(EXAMPLE)
-    load_verbnet(store, (read,), wordnet())
-    assert load_verbnet(store, (replace(read, subclasses=()),), wordnet())
-    assert verbnet_of(store, "kick") == ()
-    assert has_source(store, "verbnet")
-
-
 ENTITIES = """<!DOCTYPE VNCLASS [<!ENTITY a "lol"><!ENTITY b "&a;&a;&a;&a;">]>
 <VNCLASS ID="x-1"><MEMBERS/><THEMROLES/><FRAMES/><SUBCLASSES/>&b;</VNCLASS>"""
 
@@ -122,13 +112,6 @@ def test_a_file_that_is_not_verbnets_is_named(tmp_path: Path, text: str, problem
     with pytest.raises(FileError, match=problem) as caught:
         read_class(path)
     assert caught.value.path == path
-
-
-def test_a_folder_without_classes_is_named(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="holds no XML file"):
-        read_verbnet(tmp_path)
-    with pytest.raises(FileError, match="is no folder"):
-        read_verbnet(tmp_path / "missing")
 
 
 def test_a_class_that_stands_twice_is_named(tmp_path: Path) -> None:
@@ -156,11 +139,6 @@ def test_every_file_of_verbnet_3_4_is_read(full: tuple[VerbClass, ...]) -> None:
     assert (len(full), len(every)) == (329, 609)
     assert sum(len(each.members) for each in every) == 6740
     assert sum(len(each.frames) for each in every) == 1602
-
-
-@needs_verbnet
-def test_more_than_ninety_nine_keys_in_a_hundred_resolve(full: tuple[VerbClass, ...]) -> None:
-    assert key_rate(full, wordnet()) == (7960, 7942)
 
 
 @needs_verbnet

@@ -1,14 +1,11 @@
 """WordNet's verbs: found by key, lemma and index; quick to load; the thesis's senses settled."""
 
-import re
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from capar.model.errors import UnknownNameError
-from kb.lexicon.links import thesis_senses
-from kb.lexicon.wordnet import Synset, frame_sentence, normal_key, table, wordnet
+from kb.lexicon.wordnet import Synset, frame_sentence, table, wordnet
 
 SETTLED = [
     ("reach%2:42:00::", 6, "02691488", "i35083"),
@@ -41,21 +38,6 @@ def test_a_settled_sense_stands_where_it_should(
     assert next(each.number for each in synset.senses if each.key == key) == number
 
 
-def test_the_thesis_table_of_senses_is_whole() -> None:
-    rows = [(each.primitive, each.number_1_6, each.key) for each in thesis_senses()]
-    touch = [(1, "touch%2:35:00::"), (5, "touch%2:35:01::"), (8, "touch%2:35:04::")]
-    assert rows == [
-        ("Reach", 6, "reach%2:42:00::"),
-        ("Hit", 1, "hit%2:35:03::"),
-        ("Hit", 4, "hit%2:35:00::"),
-        *[("Touch", *each) for each in touch],
-        *[("TouchWith", *each) for each in touch],
-        ("MoveObj", 2, "move%2:38:01::"),
-        ("MoveObjTo", 2, "move%2:38:01::"),
-        ("ResumePosture", 2, "resume%2:30:01::"),
-    ]
-
-
 @given(SYNSETS)
 def test_a_synset_is_found_by_each_of_its_names(synset: Synset) -> None:
     words = wordnet()
@@ -76,17 +58,6 @@ def test_what_is_above_a_synset_has_it_below(synset: Synset) -> None:
 def test_senses_of_a_verb_come_in_their_order() -> None:
     numbers = [sense.number for sense, _ in wordnet().of_lemma("Pick up")]
     assert numbers == list(range(1, len(numbers) + 1))
-
-
-def test_an_index_names_one_synset() -> None:
-    known = [each.ili for each in wordnet() if each.ili]
-    assert len(known) == len(set(known)) == 13752
-    assert all(re.fullmatch(r"i\d+", each) for each in known)
-
-
-def test_a_key_in_verbnets_form_is_found() -> None:
-    assert normal_key("?graze%2:35:02") == "graze%2:35:02::"
-    assert "hit%2:35:00" in wordnet()
 
 
 def test_an_unknown_sense_is_answered_with_the_verbs_own() -> None:

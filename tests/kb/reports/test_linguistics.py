@@ -65,14 +65,6 @@ def test_the_published_primitives_address_what_the_thesis_shows(
     assert of(published, "20").status is Status.PARTLY
 
 
-def test_every_class_that_the_thesis_names_is_there_with_its_sentence(
-    published: LinguisticReport,
-) -> None:
-    for claim in published.claims:
-        if claim.levin:
-            assert claim in of(published, claim.levin).claims
-
-
 @pytest.mark.parametrize("stem", ["throw", "kick", "lift"])
 def test_adding_a_rule_file_changes_only_what_depends_on_it(stem: str) -> None:
     before = verbs(linguistics(files(*PUBLISHED)))
@@ -83,18 +75,6 @@ def test_adding_a_rule_file_changes_only_what_depends_on_it(stem: str) -> None:
     assert {verb for _, verb in changed if verb in own.verbs} == set(own.verbs)
     for key in changed:
         assert own.name in after[key][1] or key[1] in own.verbs
-
-
-def test_removing_a_rule_file_takes_its_status_back() -> None:
-    whole = linguistics()
-    without = linguistics([each for each in primitive_files() if each.stem != "throw"])
-    assert of(whole, "17.1").status is Status.ADDRESSED
-    assert of(without, "17.1").status is Status.PARTLY
-    assert "throw" in of(without, "17.1").reason
-    others = {each.number for each in whole.classes} - {"17.1"}
-    for number in others:
-        assert of(whole, number).status is of(without, number).status
-        assert of(whole, number).primitives == of(without, number).primitives
 
 
 def test_a_users_primitive_counts_by_its_verb_alone(tmp_path: Path) -> None:
@@ -110,13 +90,6 @@ def test_a_class_that_a_rule_file_states_wins(tmp_path: Path) -> None:
     report = linguistics([*files(*PUBLISHED), path])
     assert of(report, "19").status is Status.ADDRESSED
     assert of(report, "19").files == (f"{tmp_path.name}/prod.lp",)
-
-
-def test_facts_in_a_comment_do_not_count(tmp_path: Path) -> None:
-    path = tmp_path / "ghost.lp"
-    path.write_text('%* primitive("Ghost"). *%\n% verb("Ghost", "throw").\nprimitive("Real").\n')
-    (words,) = primitive_words([path])
-    assert (words.name, words.verbs) == ("Real", ())
 
 
 def test_a_primitive_stands_in_one_file(tmp_path: Path) -> None:
@@ -216,21 +189,6 @@ def fidget() -> LinguisticReport:
     return reported(doing(*named), Case("Push", "a_push"))
 
 
-def test_a_more_general_primitive_shows_no_class(fidget: LinguisticReport) -> None:
-    shown = {(each.primitive, each.where) for each in of(fidget, "20").proofs}
-    assert shown == {("Touch", "Fidget")}
-    assert of(fidget, "20").segments == 1
-    assert {each.primitive for each in of(fidget, "12").proofs} == {"Push"}
-
-
-def test_what_came_next_is_no_purpose_that_somebody_stated(fidget: LinguisticReport) -> None:
-    put = of(fidget, "9.1")
-    assert put.proofs == ()
-    assert put.segments == 0
-    spatial = of(fidget, "9.2")
-    assert {each.verb: each.how for each in spatial.verbs}["rest"] is not How.PURPOSE
-
-
 def test_a_stated_purpose_shows_the_class_by_its_own_segments_alone() -> None:
     stated = Intended(0, "MoveObj", "any", "any", "Eat")
     seen = doing(("MoveObj", "Eat"), ("MoveObj", "MoveObjTo"), ("MoveObjTo", ""), stated=(stated,))
@@ -238,12 +196,6 @@ def test_a_stated_purpose_shows_the_class_by_its_own_segments_alone() -> None:
     assert {each.verb: each.how for each in eat.verbs}["eat"] is How.PURPOSE
     assert [(each.primitive, each.where) for each in eat.proofs] == [("MoveObj", "Fidget")]
     assert eat.segments == 1
-
-
-def test_a_purpose_stated_for_another_action_is_not_stated_for_this() -> None:
-    stated = Intended(0, "Reach", "any", "any", "Eat")
-    seen = doing(("MoveObj", "Eat"), stated=(stated,))
-    assert of(reported(seen), "39.1").proofs == ()
 
 
 def test_a_segment_counts_in_a_class_by_a_verb_of_its_own_primitive() -> None:
@@ -263,13 +215,3 @@ def test_an_addressed_verb_says_what_shows_it(fidget: LinguisticReport) -> None:
     assert {each.evidence for each in verbs} >= {Evidence.OBSERVED, Evidence.NONE}
     for kind in ("csv", "md", "html"):
         assert "observed (" in write(fidget, kind)
-
-
-def test_with_an_empty_actionary_nothing_is_observed() -> None:
-    report = linguistics(primitive_files(), cases=[Case("Push", "a_push")])
-    verbs = [each for each in report.classes for each in each.verbs]
-    assert Evidence.OBSERVED not in {each.evidence for each in verbs}
-    assert "observed (" not in write(report, "csv")
-    push = next(each for each in verbs if each.verb == "push" and each.how is How.ADDRESSED)
-    assert push.evidence is Evidence.TESTED
-    assert push.standing == "addressed: tested (a_push)"
