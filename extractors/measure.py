@@ -60,9 +60,8 @@ from extractors.bodies.bodies import Bodies, BodyGeometry, bodies_of, trunk_sens
 from extractors.bodies.poses import Poses
 from extractors.calibration import calibrated, check_clock, thresholds_of
 from extractors.contact.blows import arrivals, blows
-from extractors.contact.contacts import Contact, EarlierAnswers, contacts
+from extractors.contact.contacts import Contact, contacts
 from extractors.contact.normals import contact_normal
-from extractors.contact.surfaces import surface
 from extractors.contact.touch_distances import forget_touchable, touching_part
 from extractors.faults.faults import faults
 from extractors.motion.impacts import closing_speed, falls, release_speed
@@ -500,11 +499,6 @@ def _loss(
     return notice(LOSS, body.name, start_s=start_s, end_s=end_s, **values)
 
 
-LONG_S = 600.0
-"""A recording of this length [s] or more takes so long to measure that to make the offset surfaces
-of its bodies once more, some seconds, hardly counts."""
-
-
 @dataclass(frozen=True, eq=False)
 class Track:
     """The low-passed motion of one tracking sensor."""
@@ -597,7 +591,6 @@ def measured(
     bodies: Bodies,
     since: Sums = FROM_THE_BEGINNING,
     *,
-    answers: EarlierAnswers | None = None,
     notices: bool = True,
     whole: bool = False,
 ) -> Measurements:
@@ -614,11 +607,15 @@ def measured(
         for name, body in trial.acting.items()
     }
     looks = {sensor.name: attention(capture, sensor, bodies, limits) for sensor in seeing(capture)}
-    near = contacts(capture, bodies, calibration, limits, answers)
+    near = contacts(capture, bodies, calibration, limits)
     moves = list(trial.motions(near))
     touches = tuple(arrivals(capture, bodies, calibration, near, moves, limits))
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
-    _forget(capture, bodies)
+    # Kept for contacts alone, and filtered poses of what handles nothing.
+    forget_touchable([*bodies.sensors.values(), *bodies.objects.values()])
+    for sensor in capture.sensors:
+        if sensor.role is not Role.ACTS:
+            bodies.sensors[sensor.name].poses.forget()
     facts = [*trial.scene(), *trial.contacts(touches), *moves]
     for name, track in tracks.items():
         facts += (ZeroCrossing(name, int(frame)) for frame in track.crossings)
@@ -643,21 +640,6 @@ def measured(
         {(each.first, each.second): each.interval[1] for each in near if each.lingers},
         dict(trial.arriving()),
     )
-
-
-def _forget(capture: Capture, bodies: Bodies) -> None:
-    """Keep nothing for contacts alone, nor filtered poses of what handles nothing.
-
-    After a long recording that goes for offset surfaces, too, though the next one may ask for them.
-    """
-    forget_touchable([*bodies.sensors.values(), *bodies.objects.values()])
-    if capture.times[-1] - capture.times[0] >= LONG_S:
-        for body in (*bodies.sensors.values(), *bodies.objects.values()):
-            if body.shape is not None:
-                surface(body.shape).forget_offsets()
-    for sensor in capture.sensors:
-        if sensor.role is not Role.ACTS:
-            bodies.sensors[sensor.name].poses.forget()
 
 
 def _track(poses: Poses, highest_mps: float, thresholds: Thresholds) -> Track:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float
 
 from capar.model import geometry
 from capar.model.calibration import Calibration, Found, MovingGround, PairCalibration
@@ -27,73 +27,6 @@ from extractors.motion.object_motion import resting
 from extractors.signals.filters import gains
 from extractors.signals.intervals import Interval, duration, frame_rate, intervals, mask
 from extractors.thresholds import Thresholds
-
-
-@dataclass(frozen=True, eq=False)
-class _Asked:
-    """A question about two bodies, and its answer."""
-
-    first: int
-    one: Body
-    two: Body
-    answer: Holds
-
-
-class EarlierAnswers:
-    """What was answered in the window before; asked anew is only where a pose differs.
-
-    The same poses have the same answer, so that nothing has to be known about filters: frames near
-    the end of a window, whose low-passed poses later frames change, are asked about again.
-    """
-
-    def __init__(self) -> None:
-        self._first = 0
-        self._asked: dict[tuple[str, str, float], _Asked] = {}
-
-    def begin(self, first: int) -> None:
-        """Begin a window."""
-        self._first = first
-
-    def near(self, names: tuple[str, str], one: Body, two: Body, *, distance_m: float) -> Holds:
-        """What ``extractors.contact.proximity.near`` answers.
-
-        ``distance_m``: distance up to which they are near [m].
-        """
-        known = self._asked.get((*names, distance_m))
-        out = np.zeros(len(one.positions), dtype=bool)
-        anew = np.ones(len(out), dtype=bool)
-        if known and known.one.surface is one.surface and known.two.surface is two.surface:
-            later = self._first - known.first
-            here = slice(max(0, -later), max(0, min(len(out), len(known.answer) - later)))
-            there = slice(here.start + later, here.stop + later)
-            if here.start < here.stop:
-                same = _same(one, here, known.one, there) & _same(two, here, known.two, there)
-                out[here] = known.answer[there] & same
-                anew[here] = ~same
-        some = np.flatnonzero(anew)
-        if some.size == len(out):
-            out = near(one, two, distance_m=distance_m)
-        elif some.size:
-            out[some] = near(_at(one, some), _at(two, some), distance_m=distance_m)
-        self._asked[*names, distance_m] = _Asked(self._first, one, two, out)
-        return out
-
-
-def _same(one: Body, here: slice, known: Body, there: slice) -> Bool[np.ndarray, "some"]:
-    """At which frames a body has the pose that it had; never where it is lost."""
-    places = (one.positions[here] == known.positions[there]).all(axis=1)
-    return places & (one.orientations[here] == known.orientations[there]).all(axis=1)
-
-
-def _at(each: Body, frames: Int[np.ndarray, "some"]) -> Body:
-    return Body(
-        each.surface,
-        each.positions[frames],
-        each.orientations[frames],
-        each.centres[frames],
-        each.rests,
-    )
-
 
 FOOT = "foot"
 """The general type of an end-effector that may stand."""
@@ -431,7 +364,6 @@ def contacts(
     bodies: Bodies,
     calibration: Calibration,
     limits: Thresholds,
-    answers: EarlierAnswers | None = None,
 ) -> tuple[Contact, ...]:
     """Every contact that is watched for: acting sensors and mobile objects with tag objects.
 
@@ -454,10 +386,9 @@ def contacts(
             apart = points_apart(pair, first, second)
             touching = np.nan_to_num(apart, nan=np.inf) <= pair.touch_m
         else:
-            names = first.name, second.name
-            touching = _near(names, one, two, pair.touch_m, answers)
+            touching = near(one, two, distance_m=pair.touch_m)
             if pair.release_m > pair.touch_m and touching.any():
-                near_by = _near(names, one, two, pair.release_m, answers)
+                near_by = near(one, two, distance_m=pair.release_m)
                 edge = round(calibration.contact_dropout_s * frame_rate(capture.times))
                 touching = bridged(touching, near_by, edge=edge)
         # Where a body was lost nothing begins or ends: what touched before and after has touched.
@@ -484,14 +415,6 @@ def contacts(
     met = [(each.first, each.second, each.interval) for each in whole]
     counted = counted_meetings(capture, bodies, met, limits)
     return tuple(each for each, counts in zip(whole, counted, strict=True) if counts)
-
-
-def _near(
-    names: tuple[str, str], one: Body, two: Body, distance_m: float, answers: EarlierAnswers | None
-) -> Holds:
-    if answers is None:
-        return near(one, two, distance_m=distance_m)
-    return answers.near(names, one, two, distance_m=distance_m)
 
 
 def of_end_effectors(

@@ -22,10 +22,9 @@ from capar.pipelines.trials import trial_of
 from extractors.bodies.bodies import BodyGeometry, bodies_of, geometry_of
 from extractors.calibration import calibrate, set_values
 from extractors.contact.blows import blow, set_going
-from extractors.contact.contacts import EarlierAnswers, bridged
+from extractors.contact.contacts import bridged
 from extractors.contact.normals import facing_normal
 from extractors.contact.proximity import (
-    FEW,
     Body,
     body,
     distance,
@@ -35,13 +34,7 @@ from extractors.contact.proximity import (
     separation,
     sweep,
 )
-from extractors.contact.surfaces import (
-    EXACTNESS_M,
-    meeting_point,
-    meeting_points,
-    offset_surface,
-    surface,
-)
+from extractors.contact.surfaces import meeting_points, surface
 from extractors.contact.touch_distances import touchable
 from extractors.measure import measure
 from extractors.motion.impacts import closing_speed, release_speed
@@ -120,7 +113,6 @@ def test_contact_of_tumbling_bodies_agrees_with_their_exact_distance(
 
 def test_a_mug_that_is_grasped_ten_times_is_touched_at_every_frame_at_which_it_is_near() -> None:
     capture = repeated(trial_of(DEMO), 5)
-    assert len(capture.times) > FEW
     limits = Thresholds()
     bodies = bodies_of(capture, limits, calibrate(capture, limits))
     hand, mug = touchable(bodies.sensors["right_hand"]), touchable(bodies.objects["mug"])
@@ -129,34 +121,6 @@ def test_a_mug_that_is_grasped_ten_times_is_touched_at_every_frame_at_which_it_i
     apart = np.array([distance(hand, mug, int(frame)) for frame in some])
     sure = np.abs(apart - 0.005) > EXACT_M
     assert (found[some] == (apart <= 0.005))[sure].all()
-
-
-@given(st.integers(0, 10_000), st.integers(10, 60), st.booleans())
-@settings(max_examples=15, deadline=None)
-def test_windows_that_overlap_are_answered_as_the_whole_is(
-    seed: int, step: int, noisy_ends: bool
-) -> None:
-    random = np.random.default_rng(seed)
-    frames, length = 300, 100
-    clock = np.arange(frames)[:, None] / 100.0
-    places = 0.05 * np.sin(2.0 * np.pi * clock * random.uniform(0.3, 1.0, 3))
-    places[random.integers(0, frames, 5)] = np.nan
-    whole = near(at(box(0.03, 0.03, 0.03), stream(places)), _handle(frames), distance_m=0.005)
-    answers = EarlierAnswers()
-    for begin in range(0, frames - length + 1, step):
-        part = places[begin : begin + length].copy()
-        if noisy_ends:
-            part[-20:] += 0.5
-        answers.begin(begin)
-        pair = at(box(0.03, 0.03, 0.03), stream(part)), _handle(length)
-        found = answers.near(("box", "handle"), *pair, distance_m=0.005)
-        sure = length - 20 * noisy_ends
-        assert (found[:sure] == whole[begin : begin + sure]).all()
-        assert not (noisy_ends and found[sure:].any())
-
-
-def _handle(frames: int) -> Body:
-    return at(handle(), still((0.0, 0.0, 0.0), frames), rests=True)
 
 
 def inside(one: Body, two: Body, frame: int) -> bool:
@@ -191,16 +155,6 @@ def test_a_lost_body_touches_nothing() -> None:
     assert found[:10].all()
     assert not found[10:20].any()
     assert found[20:].all()
-
-
-@pytest.mark.parametrize("distance_m", [0.002, 0.005, 0.02])
-@pytest.mark.parametrize("of", [box(0.1, 0.2, 0.05), cup(), handle(), ball(0.03)])
-def test_no_part_of_an_offset_surface_is_beyond_its_distance(of: Shape, distance_m: float) -> None:
-    mesh = surface(of).mesh
-    corners = offset_surface(mesh, distance_m, closed=True).reshape(-1, 3)
-    some = corners[:: max(1, len(corners) // 100)]
-    _, far, _ = trimesh.proximity.closest_point_naive(mesh, some)
-    assert far.max() <= distance_m + 1.05 * EXACTNESS_M
 
 
 def test_the_nearest_points_lie_as_far_apart_as_the_distance_says() -> None:
@@ -242,16 +196,15 @@ def test_a_bridged_contact_keeps_its_first_and_its_last_frame_and_spans_only_wha
 
 @pytest.mark.parametrize("size_m", [0.01, 0.05, 0.15])
 def test_many_poses_are_answered_as_few_are(size_m: float) -> None:
-    """A thing that fits between a body and an offset surface far around it is not apart."""
-    times = np.linspace(0.0, 40.0, 4 * FEW)
+    times = np.linspace(0.0, 40.0, 4000)
     distance = 0.08 * (1.0 + np.sin(times)) + 0.15 + size_m / 2.0 - 0.002
     way = np.stack([distance, 0.05 * np.sin(0.7 * times), 0.05 * np.cos(1.3 * times)], axis=1)
     turns = Rotation.from_rotvec(np.outer(0.2 * times, (0.0, 0.0, 1.0))).as_matrix()
     one, two = surface(box(0.3, 0.3, 0.3)), surface(box(size_m, size_m, size_m))
     whole = sweep(one, two, turns, way, distance_m=0.005)
     parts = [
-        sweep(one, two, turns[begin : begin + FEW], way[begin : begin + FEW], distance_m=0.005)
-        for begin in range(0, len(way), FEW)
+        sweep(one, two, turns[begin : begin + 100], way[begin : begin + 100], distance_m=0.005)
+        for begin in range(0, len(way), 100)
     ]
     assert 0.0 < whole.mean() < 1.0
     assert (whole != np.concatenate(parts)).sum() <= 4
@@ -570,26 +523,14 @@ def test_what_lasts_begins_where_it_clearly_holds_and_never_flickers_in_between(
         assert beside <= {found[frame]}
 
 
-@given(seed=st.integers(0, 2**32 - 1), scale=st.floats(1e-3, 1e3))
-def test_one_pair_of_triangles_meets_where_many_pairs_do(seed: int, scale: float) -> None:
-    first, second = scale * np.random.default_rng(seed).normal(size=(2, 20, 3, 3))
-    points = meeting_points(first, second)
-    for one, other, expected in zip(first, second, points, strict=True):
-        point = meeting_point(one.tolist(), other.tolist())
-        if point is None:
-            assert np.isnan(expected).all()
-        else:
-            assert np.array(point) == pytest.approx(expected, rel=1e-9, abs=1e-9 * scale)
-
-
 @given(seed=st.integers(0, 2**32 - 1))
 def test_a_meeting_point_lies_in_the_planes_of_both_triangles(seed: int) -> None:
     first, second = np.random.default_rng(seed).normal(size=(2, 3, 3))
-    point = meeting_point(first.tolist(), second.tolist())
-    if point is not None:
+    (point,) = meeting_points(first[None], second[None])
+    if not np.isnan(point).any():
         for corners in (first, second):
             normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-            height = (np.array(point) - corners[0]) @ normal / np.linalg.norm(normal)
+            height = (point - corners[0]) @ normal / np.linalg.norm(normal)
             assert height == pytest.approx(0.0, abs=1e-6)
 
 

@@ -37,7 +37,6 @@ from capar_rules.borders.ticks import in_frames, times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from extractors.bodies.bodies import observed_object
 from extractors.calibration import thresholds_of
-from extractors.contact.contacts import EarlierAnswers
 from extractors.measure import Measurements, measure, measured
 from extractors.relations.places import seek_rooms
 from extractors.relations.support import PART
@@ -172,7 +171,6 @@ class LiveObserver:
         self._segments = SegmentLedger(self.horizons.segments, dict.fromkeys(EDGES, later))
         self._words = primitive_words(primitive_files(self.rules.added)) if sentences else None
         seek_rooms((each.shape for each in rig.objects if each.shape), thresholds_of(calibration))
-        self._answers = EarlierAnswers()
         self._first_motion = FirstMotion(calibration, body_rows(rig))
         self._stirs = False
         self._lasting: int | None = None
@@ -234,13 +232,11 @@ class LiveObserver:
         frontier = window.last - (0 if last else self._frames(self.horizons.settle_s))
         kept = window.last - (0 if last else self._frames(self.horizons.edge_s))
         bodies = self._carried.bodies(window)
-        self._answers.begin(window.first)
         measurements = measured(
             window.capture,
             self.calibration,
             bodies,
             self._carried.sums(window),
-            answers=self._answers,
             notices=False,
         )
         grain = self._frames(self.horizons.grain_s)
