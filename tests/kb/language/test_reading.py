@@ -18,7 +18,7 @@ from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.pipelines.observation import observe
 from capar.views.readings import question_lines, reading_lines
 from kb.actionary import Actionary
-from kb.language import Instruction, Plan, Question, parse, sentence
+from kb.language import Instruction, Question, parse, sentence
 from kb.language.reader import SentenceError
 from kb.language.vocabulary import EFFECTORS, EVERYTHING, PREPOSITIONS, Vocabulary
 from kb.lexicon.english import noun, past
@@ -166,18 +166,14 @@ def drinking() -> Actionary:
     ("text", "variable", "expected"),
     [
         ("who drank?", "performer", {"tall_man"}),
-        ("who touched the mug?", "performer", {"tall_man"}),
         ("who put down the mug?", "performer", {"tall_man"}),
         ("who picked the mug up?", "performer", {"tall_man"}),
         ("where was the mug put?", "place", {"table"}),
         ("what did she drink from?", "object", {"mug"}),
         ("what was the first thing that he picked up?", "object", {"mug"}),
-        ("how often did she drink?", "times", {1}),
         ("how often did he touch the mug?", "times", {1}),
-        ("which hand moved the mug to the head?", "ee", {"right_hand"}),
         ("which hand moved the mug before it was put on the table?", "ee", {"right_hand"}),
         ("what did the right hand do while the mug was being tilted?", "action", {"Drink"}),
-        ("who poured?", "performer", set()),
         ("who reached for the table?", "performer", set()),
         ("who held the mug with the left hand?", "performer", set()),
         ("who drank within 0.1 s?", "performer", set()),
@@ -192,12 +188,3 @@ def test_a_question_is_answered_by_what_entails_it(
     rows = value.chosen(list(drinking.store.ask(value.sparql).plain()))
     assert {row[variable] for row in rows} >= expected
     assert bool(rows) == bool(expected)
-
-
-def test_what_several_say_is_a_plan() -> None:
-    value = parse("lift the mug, then put it on the table while the left hand holds the box", ANY)
-    assert isinstance(value, Plan)
-    assert [[step.call.action for step in stream] for stream in value.parts[0]] == [
-        ["Lift", "MoveObjTo"],
-        ["Touch"],
-    ]
