@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Any
 
 from capar.model.observation import Segment
 from capar.model.par import Call, Step
@@ -51,10 +52,6 @@ class Circumstances:
 
     conditions: tuple["Condition", ...] = ()
 
-    def __bool__(self) -> bool:
-        """Whether anything is said."""
-        return self != Circumstances()
-
 
 @dataclass(frozen=True, slots=True)
 class Instruction:
@@ -83,11 +80,13 @@ class Instruction:
         name = step.action if isinstance(step, Step) else step.name
         return cls(Call(name, step.objects, step.purpose), step.ee)
 
+    def having(self, **circumstances: Any) -> "Instruction":
+        """The same in other circumstances."""
+        return replace(self, circumstances=replace(self.circumstances, **circumstances))
+
     def under(self, *conditions: "Condition") -> "Instruction":
         """The same under further conditions."""
-        own = self.circumstances
-        changed = replace(own, conditions=(*own.conditions, *conditions))
-        return replace(self, circumstances=changed)
+        return self.having(conditions=(*self.circumstances.conditions, *conditions))
 
 
 @dataclass(frozen=True, slots=True)

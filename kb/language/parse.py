@@ -102,15 +102,7 @@ def _trailing(reader: Reader, stream: list[Instruction]) -> bool:
     while reader.adjunct(found) or reader.accept("and", "then"):
         pass
     if reader.at > after and (reader.done or reader.peek() in {",", ".", "and", "while"}):
-        own = last.circumstances
-        changed = replace(
-            own,
-            manner=(*own.manner, *found.manner),
-            count=found.count or own.count,
-            window=found.window or own.window,
-            duration_s=found.duration_s or own.duration_s,
-        )
-        stream[-1] = replace(last, circumstances=changed)
+        stream[-1] = found.of(last)
         return True
     reader.at = start
     if reader.peek(int(reader.peek() == ",")) in {"while", "whilst"}:
@@ -138,8 +130,7 @@ def _clause(reader: Reader, read: _Text) -> Instruction:
         reader.taken = reader.taken[0], value.ee
     own = value.circumstances
     manner = (before, *own.manner) if before else own.manner
-    changed = replace(own, manner=manner, window=own.window or window)
-    return replace(value, circumstances=changed).under(*first)
+    return value.having(manner=manner, window=own.window or window).under(*first)
 
 
 def _opened(reader: Reader) -> tuple[str, Window | None]:

@@ -12,7 +12,7 @@ from kb.language.instruction import GAP, Condition, Instruction, Relation
 from kb.lexicon.english import PEOPLE
 from kb.lexicon.wordnet import table
 
-SOURCES = ("off", "out of", "away from")
+SOURCES: tuple[str, ...] = ("off", "out of", "away from")
 """Prepositions of what a thing is taken from, as observations state them."""
 
 LIMBS = {
@@ -37,7 +37,6 @@ TIMES = {
     Relation.SAME_AGENT: "?performer@ = ?performer",
 }
 """What each relation demands of two segments."""
-
 
 _PATHS = {
     "object": "capar:object/capar:name",
@@ -114,30 +113,25 @@ def _doer(about: Instruction, suffix: str) -> Iterator[str]:
 
 def _where(about: Instruction, suffix: str) -> Iterator[str]:
     """Where a body is or goes, as the observation states it."""
-    if about.source:
-        yield from _placement(SOURCES, _body(about), _text(about.source), f"source{suffix}", suffix)
-    named = {*about.call.objects, about.source}
-    for index, (preposition, place) in enumerate(about.circumstances.places):
-        if place not in named and place != "someone":
-            words = (ALIKE.get(preposition, preposition),)
-            body = _body(about)
-            yield from _placement(words, body, _text(place), f"place{suffix}_{index}", suffix)
+    named = {*about.call.objects, about.source, "someone"}
+    stated = [(f"source{suffix}", SOURCES, about.source)] if about.source else []
+    stated += [
+        (f"place{suffix}_{index}", (ALIKE.get(word, word),), place)
+        for index, (word, place) in enumerate(about.circumstances.places)
+        if place not in named
+    ]
+    for name, prepositions, place in stated:
+        yield f"  VALUES ?preposition_{name} {{ {' '.join(map(_text, prepositions))} }}"
+        yield f"  ?segment{suffix} capar:placement ?{name} ."
+        yield f"  ?{name} capar:preposition ?preposition_{name} ; capar:other {_text(place)} ."
+        if body := _body(about):
+            yield f"  ?{name} capar:body {body} ."
 
 
 def _body(about: Instruction) -> str:
     """The body that is somewhere: the object, the one that is asked for, or any."""
     name = about.call.objects[0] if about.call.objects else ""
     return "?object" if name == GAP else _text(name) if name else ""
-
-
-def _placement(
-    prepositions: Iterable[str], body: str, other: str, name: str, suffix: str
-) -> Iterator[str]:
-    yield f"  VALUES ?preposition_{name} {{ {' '.join(map(_text, prepositions))} }}"
-    yield f"  ?segment{suffix} capar:placement ?{name} ."
-    yield f"  ?{name} capar:preposition ?preposition_{name} ; capar:other {other} ."
-    if body:
-        yield f"  ?{name} capar:body {body} ."
 
 
 def _when(about: Instruction, suffix: str) -> Iterator[str]:

@@ -106,8 +106,7 @@ def _which(reader: Reader) -> Question | None:
 def _of_things(reader: Reader, kinds: tuple[str, ...]) -> Instruction:
     asks = reader.peek() in {"did", "does"}
     about = inverted(reader, GAP_THING) if asks else predicate(reader, GAP_THING)
-    own = about.circumstances
-    return replace(about, circumstances=replace(own, others=(*own.others, *kinds)))
+    return about.having(others=(*about.circumstances.others, *kinds))
 
 
 def _which_hand(reader: Reader) -> Question:
@@ -196,8 +195,8 @@ def question(reader: Reader) -> Question | None:
     found = _question(reader)
     if found is None:
         return None
-    own = replace(found.about.circumstances, window=found.about.circumstances.window or window)
-    return replace(found, about=replace(found.about, circumstances=own).under(*first))
+    about = found.about.having(window=found.about.circumstances.window or window)
+    return replace(found, about=about.under(*first))
 
 
 def _question(reader: Reader) -> Question | None:
@@ -228,14 +227,7 @@ def _finished(reader: Reader, value: Question) -> Question:
         reader.accept(",")
         found = Adjuncts()
         if reader.adjunct(found):
-            own = value.about.circumstances
-            own = replace(
-                own,
-                manner=(*own.manner, *found.manner),
-                window=found.window or own.window,
-                count=found.count or own.count,
-            )
-            value = replace(value, about=replace(value.about, circumstances=own))
+            value = replace(value, about=found.of(value.about))
             continue
         reader.at = start
         if more := conditions(reader):

@@ -9,7 +9,7 @@ from functools import cache, wraps
 from typing import Concatenate, ParamSpec, TypeVar
 
 from capar.model.errors import CaparError
-from kb.language.instruction import Window
+from kb.language.instruction import Instruction, Window
 from kb.language.vocabulary import Vocabulary, is_nominal, of_class
 from kb.lexicon.english import Form
 
@@ -68,6 +68,16 @@ class Adjuncts:
     count: int = 0
     duration_s: float = 0.0
     window: Window | None = None
+
+    def of(self, value: Instruction) -> Instruction:
+        """An instruction with these, too."""
+        own = value.circumstances
+        return value.having(
+            manner=(*own.manner, *self.manner),
+            count=self.count or own.count,
+            window=self.window or own.window,
+            duration_s=self.duration_s or own.duration_s,
+        )
 
 
 class Reader:

@@ -129,7 +129,7 @@ LOADS_AND_TOOLS = {
 @pytest.mark.parametrize(
     ("of", "text"),
     [*ACTIONS.items(), *LOADS_AND_TOOLS.items()],
-    ids=lambda each: getattr(each, "__name__", ""),
+    ids=lambda each: getattr(each, "__name__", None),
 )
 def test_an_action_is_told_as_it_was(of: Callable[..., Trial] | str, text: str) -> None:
     if isinstance(of, str):
