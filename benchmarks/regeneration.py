@@ -13,8 +13,9 @@ from capar.body.scripted_actions import ACTIONS, action_capture
 from capar.pipelines.round_trips import Trip, body, observed_source, round_trips
 from capar.regeneration.motion import perform_plan
 from capar.regeneration.paths import Care
-from capar.regeneration.planning import led, reachable
+from capar.regeneration.planning import led
 from capar.regeneration.quality import failures, quality
+from capar.regeneration.search import reachable
 
 AGENTS = ("man", "woman", "child")
 SEED = 7

@@ -25,7 +25,7 @@ from capar.pipelines.spoken_requests import (
 )
 from capar.pipelines.trials import trial_of
 from capar.regeneration import scenes
-from capar.regeneration.roles import captured_scene
+from capar.regeneration.sources import captured_scene
 from kb.language.vocabulary import Vocabulary
 
 HERE = Path(__file__).parent

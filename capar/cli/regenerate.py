@@ -470,7 +470,7 @@ def _perform_request(task: _Task, text: str) -> None:
     from capar.pipelines.recordings import observed_actions
     from capar.pipelines.spoken_requests import Performance, after, choices, perform, read_requests
     from capar.pipelines.trials import trial_of
-    from capar.regeneration.roles import captured_scene
+    from capar.regeneration.sources import captured_scene
 
     stage = task.scene or task.what
     if stage is None:

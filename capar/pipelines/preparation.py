@@ -25,13 +25,12 @@ from capar.regeneration import roles
 from capar.regeneration.captures import OTHER, Completion, completed, scene_after
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.goals import put_down_poses
-from capar.regeneration.planning import is_possible
 from capar.regeneration.quality import Asserted, Quality
 from capar.regeneration.roles import Kinds, kind_of
 from capar.regeneration.scenes import PlanError, Scene, mobile, moved
-from capar.regeneration.search import regenerate
+from capar.regeneration.search import is_possible, regenerate
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import Source, source_of
+from capar.regeneration.sources import Source, captured_scene, source_of
 from capar_rules.engine.solver import Answer, Term, best, rule_file, text_of
 
 MARGIN_S = 0.3  # So long a contact is kept before a step that ends it, or after one that makes it.
@@ -602,7 +601,7 @@ def captured_world(place: Capture | Path | str) -> World:
         CaparError: It has a fault, no sensor of the head, or an object without a shape.
     """
     trial = trial_of(place)
-    return _world(trial, observe(trial), roles.captured_scene(trial))
+    return _world(trial, observe(trial), captured_scene(trial))
 
 
 def _world(capture: Capture, observation: Observation, scene: Scene) -> World:

@@ -9,9 +9,10 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
 from capar.body.scripts import SIDES
+from capar.body.skeleton import eyes_between
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import HandFrame, Source, body_hand_frame, eyes_in_body, palm_of
+from capar.regeneration.sources import HandFrame, Source, body_hand_frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +37,14 @@ def body_frames(human: Human, scene: Scene) -> BodyFrames:
     """The frames of a body that stands at ease in a scene."""
     solver = Solver(human, (*scene.place, scene.floor_m), scene.heading)
     hands = {side: body_hand_frame(human, side) for side in SIDES}
-    palms = {side: palm_of(human, side, hands[side]) for side in SIDES}
+    palms = {}
+    for side, frame in hands.items():
+        site = human.model.site(f"{side}_palm")
+        turn = Rotation.from_quat(site.quat, scalar_first=True)
+        palms[side] = frame.pose.inv() * RigidTransform.from_components(site.pos, turn)
     rest = {side: solver.palm(side) * palms[side].inv() for side in SIDES}
     turn = Rotation.from_euler("z", scene.heading)
-    spot = np.array([*scene.place, scene.floor_m]) + turn.apply(eyes_in_body(human))
+    spot = np.array([*scene.place, scene.floor_m]) + turn.apply(eyes_between(human.measures))
     return BodyFrames(human, hands, palms, rest, RigidTransform.from_components(spot, turn))
 
 
@@ -57,16 +62,16 @@ def free_pose(
     new: BodyFrames,
     side: str,
     frames: tuple[int, int],
-    held: RigidTransform,
+    held: RigidTransform | None,
 ) -> RigidTransform:
-    """Where a hand that was free at a frame is on the new body, beside a hold.
+    """Where a hand that was free at the first frame is, holding something at the second, if so.
 
     As far from ease as it was, or from where it takes the object or lets it go, if it was nearer to
     that: a recording may begin when the hand is about to arrive.
     """
     free, holding = (source.hands[side].path[frame] for frame in frames)
-    gone = free.translation - holding.translation
-    if np.linalg.norm(gone) >= np.linalg.norm(free.translation - old.rest[side].translation):
+    gone, at_ease = free.translation - holding.translation, old.rest[side].translation
+    if held is None or np.linalg.norm(gone) >= np.linalg.norm(free.translation - at_ease):
         return rest_pose(source, old, new, side, frames[0])
     ahead = (new.eyes * old.eyes.inv()).rotation
     turned = ahead * free.rotation * holding.rotation.inv() * ahead.inv() * held.rotation

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from jaxtyping import Float
@@ -18,13 +18,14 @@ from capar.body.scenes import Thing, box
 from capar.body.scripts import SIDES
 from capar.body.sensors import PERFECT, Tracker
 from capar.body.shapes import segment_surface
-from capar.model.capture import Agent, Capture, Role, Sensor, Shape, Stream, TagType
+from capar.body.skeleton import eyes_between
+from capar.model.capture import Agent, Capture, Role, Sensor, Shape, Stream, TagObject, TagType
 from capar.model.errors import CaparError, FileError
 from capar.model.geometry import runs
 from capar.regeneration.hand_overs import JointMotion
 from capar.regeneration.motion import Motion
 from capar.regeneration.scenes import Scene, check_keys, read_toml
-from capar.regeneration.sources import HandAxes, Source, eyes_in_body
+from capar.regeneration.sources import HandAxes, Source
 from capar.regeneration.stepping import Stepping
 
 
@@ -105,57 +106,62 @@ def mirrored(capture: Capture, place: tuple[float, float], heading: float) -> Ca
     """
     normal = np.array([[-np.sin(heading), np.cos(heading), 0.0]])
     origin = np.array([[*place, 0.0]])
-    names = {sensor.name: _renamed(sensor.name) for sensor in capture.sensors}
+
+    def other(name: str) -> str:
+        """``right_hand`` and ``hand_right`` for the other side."""
+        return "_".join(OTHER.get(part, part) for part in name.split("_"))
+
+    names = {sensor.name: other(sensor.name) for sensor in capture.sensors}
     sensors = tuple(
         replace(
-            sensor,
+            _reflected(sensor, origin, normal),
             name=names[sensor.name],
             side=OTHER.get(sensor.side, sensor.side),
-            link=_renamed(sensor.link),
-            stream=_reflected(sensor.stream, origin, normal),
-            shape=mirrored_shape(sensor.shape),
-            gaze=_vector(sensor.gaze),
-            eye=_vector(sensor.eye),
+            link=other(sensor.link),
+            gaze=(sensor.gaze[0], -sensor.gaze[1], sensor.gaze[2]),
+            eye=(sensor.eye[0], -sensor.eye[1], sensor.eye[2]),
             part_of=names.get(sensor.part_of, sensor.part_of),
         )
         for sensor in capture.sensors
-    )
-    objects = tuple(
-        replace(o, stream=_reflected(o.stream, origin, normal), shape=mirrored_shape(o.shape))
-        for o in capture.objects
     )
     pivots = tuple(
         replace(p, first=names.get(p.first, p.first), second=names.get(p.second, p.second))
         for p in capture.pivot_contacts
     )
-    conventions = {names.get(name, name): one for name, one in capture.conventions.items()}
     return replace(
-        capture, sensors=sensors, objects=objects, pivot_contacts=pivots, purposes=(),
-        conventions=conventions,
+        capture, sensors=sensors, pivot_contacts=pivots, purposes=(),
+        objects=tuple(_reflected(each, origin, normal) for each in capture.objects),
+        conventions={names.get(name, name): one for name, one in capture.conventions.items()},
     )  # fmt: skip
 
 
-def _renamed(name: str) -> str:
-    """``right_hand`` and ``hand_right`` for the other side."""
-    return "_".join(OTHER.get(part, part) for part in name.split("_"))
+Body = TypeVar("Body", Sensor, TagObject)
 
 
-def mirrored_shape(shape: Shape | None) -> Shape | None:
-    """A shape mirrored in its own frame, so that the frame stays right-handed."""
-    if shape is None:
-        return None
-    faces = np.array(shape.faces)[:, ::-1]
-    return Shape(np.array(shape.vertices) @ LOCAL, faces, shape.source, shape.description)
+def _reflected(
+    body: Body, origins: Float[np.ndarray, "#frames 3"], normals: Float[np.ndarray, "#frames 3"]
+) -> Body:
+    """A body as a mirror shows it, which may be elsewhere at every frame.
 
-
-def _vector(vector: tuple[float, float, float]) -> tuple[float, float, float]:
-    x, y, z = vector
-    return (x, -y, z)
+    Its shape is mirrored in its own frame, so that the frame stays right-handed.
+    """
+    stream, shape = body.stream, body.shape
+    planes = np.eye(3) - 2.0 * np.einsum("fi,fj->fij", normals, normals)
+    spots = np.einsum("fij,fj->fi", planes, stream.positions - origins) + origins
+    turns, known = np.full_like(stream.orientations, np.nan), ~stream.lost
+    before = Rotation.from_quat(stream.orientations[known], scalar_first=True).as_matrix()
+    planes = np.broadcast_to(planes, (len(known), 3, 3))
+    turned = Rotation.from_matrix(planes[known] @ before @ LOCAL)
+    turns[known] = turned.as_quat(scalar_first=True)
+    if shape is not None:
+        vertices, faces = np.array(shape.vertices) @ LOCAL, np.array(shape.faces)[:, ::-1]
+        shape = Shape(vertices, faces, shape.source, shape.description)
+    return replace(body, stream=Stream(np.array(stream.times), spots, turns), shape=shape)
 
 
 KEYS = {"from_s", "to_s", "performer", "mirrored", "assumed_size", "hand"}
 PERFORMER_KEYS = {"kind", "stature_m", "place", "heading_deg", "floor_m"}
-HAND_KEYS = {"fingers", "palm"}
+HAND_KEYS = ("fingers", "palm")
 
 
 @dataclass(frozen=True)
@@ -210,8 +216,8 @@ class Completion:
         out += [f"{hand!r} mirrors the other at {thing!r}" for hand, thing in self.mirrored.items()]
         out += [f"{thing!r} is {x:.2f} x {y:.2f} m" for thing, (x, y) in self.sizes.items()]
         out += [
-            f"the {side} hand's fingers point to {axes.fingers} and its palm faces {axes.palm}"
-            for side, axes in self.axes.items()
+            f"the {side} hand's fingers point to {fingers} and its palm faces {palm}"
+            for side, (fingers, palm) in self.axes.items()
         ]
         return tuple(f"assumed: {text}" for text in out)
 
@@ -234,10 +240,16 @@ def read_completion(path: Path) -> Completion:
     )
     check_keys(path, "[performer]", performer, PERFORMER_KEYS)
     check_keys(path, "[hand]", hand, set(OTHER))
-    hands = {side: _table(path, hand, side) for side in hand}
-    for side, row in hands.items():
-        check_keys(path, f"[hand.{side}]", row, HAND_KEYS)
     try:
+        axes: dict[str, HandAxes] = {}
+        for side in hand:
+            row = _table(path, hand, side)
+            check_keys(path, f"[hand.{side}]", row, set(HAND_KEYS))
+            fingers, palm = (np.array([float(x) for x in row[name]]) for name in HAND_KEYS)
+            for direction in (fingers, palm):
+                if direction.shape != (3,) or not np.linalg.norm(direction) > 0.0:
+                    raise ValueError(f"{direction.tolist()} is no direction [x, y, z]")
+            axes[side] = fingers, palm
         place = performer.get("place")
         return Completion(
             from_s=float(table.get("from_s", 0.0)),
@@ -249,20 +261,12 @@ def read_completion(path: Path) -> Completion:
             floor_m=float(performer.get("floor_m", 0.0)),
             mirrored={str(hand): str(thing) for hand, thing in mirrored.items()},
             sizes={n: (float(s[0]), float(s[1])) for n, s in sizes.items()},
-            axes={side: _axes(row) for side, row in hands.items()},
+            axes=axes,
         )
     except KeyError as error:
         raise FileError(path, f"[hand] lacks {error}.", "State both fingers and palm.") from None
     except (TypeError, ValueError, IndexError) as error:
         raise FileError(path, f"{error}.", "Numbers are needed, and place = [x, y].") from None
-
-
-def _axes(row: Mapping[str, Any]) -> HandAxes:
-    fingers, palm = (np.array([float(x) for x in row[name]]) for name in ("fingers", "palm"))
-    for direction in (fingers, palm):
-        if direction.shape != (3,) or not np.linalg.norm(direction) > 0.0:
-            raise ValueError(f"{direction.tolist()} is no direction [x, y, z]")
-    return HandAxes(fingers, palm)
 
 
 def completed(capture: Capture, completion: Completion) -> Capture:
@@ -271,37 +275,36 @@ def completed(capture: Capture, completion: Completion) -> Capture:
     Raises:
         CaparError: It contradicts the capture, or leaves nothing of it.
     """
-    made = _cut(capture, completion.from_s, completion.to_s)
-    agent = made.agent
+    agent = capture.agent
     if completion.kind:
         agent = replace(agent, kind=completion.kind)
     if completion.stature_m is not None:
         agent = replace(agent, measures={**agent.measures, "stature": completion.stature_m})
-    made = replace(made, agent=agent)
+    made = replace(_cut(capture, completion.from_s, completion.to_s), agent=agent)
     for name, size in completion.sizes.items():
-        made = _sized(made, name, size)
+        thing = capture.tag_object(name)
+        if not thing.assumed or thing.shape is None:
+            known = ", ".join(o.name for o in capture.objects if o.assumed)
+            raise CaparError(
+                f"the size of {name!r} is recorded; [assumed_size] is for "
+                f"{known or 'nothing in this capture'}"
+            )
+        middle = thing.shape.bounds.mean(axis=0)
+        factors = np.array([*size, thing.shape.size[2]]) / thing.shape.size
+        vertices = (np.array(thing.shape.vertices) - middle) * factors + middle
+        shape = replace(thing.shape, vertices=vertices)
+        objects = (replace(o, shape=shape) if o.name == name else o for o in made.objects)
+        made = replace(made, objects=tuple(objects))
     sensors = list(made.sensors)
     if completion.place is not None and not any(s.end_effector == "head" for s in sensors):
         sensors.append(_head(made, completion))
-    for hand, thing in completion.mirrored.items():
-        sensors.append(_mirrored_hand(made, hand, thing, completion.heading_deg))
+    for hand, thing_name in completion.mirrored.items():
+        sensors.append(_mirrored_hand(made, hand, thing_name, completion.heading_deg))
     return replace(made, sensors=tuple(sensors))
 
 
-def _sized(capture: Capture, name: str, size: tuple[float, float]) -> Capture:
-    thing = capture.tag_object(name)
-    if not thing.assumed or thing.shape is None:
-        known = ", ".join(o.name for o in capture.objects if o.assumed) or "nothing in this capture"
-        raise CaparError(f"the size of {name!r} is recorded; [assumed_size] is for {known}")
-    middle = thing.shape.bounds.mean(axis=0)
-    factors = np.array([*size, thing.shape.size[2]]) / thing.shape.size
-    vertices = (np.array(thing.shape.vertices) - middle) * factors + middle
-    shape = replace(thing.shape, vertices=vertices)
-    objects = (replace(o, shape=shape) if o.name == name else o for o in capture.objects)
-    return replace(capture, objects=tuple(objects))
-
-
 def _cut(capture: Capture, from_s: float, to_s: float) -> Capture:
+    """The part of a capture between two times, which begins at 0 s."""
     kept = (capture.times >= from_s) & (capture.times <= to_s)
     if kept.all():
         return capture
@@ -310,16 +313,15 @@ def _cut(capture: Capture, from_s: float, to_s: float) -> Capture:
             f"nothing of {capture.name!r} is between {from_s:g} and {to_s:g} s; it lasts "
             f"{capture.times[-1]:.2f} s"
         )
+
+    def cut(body: Body) -> Body:
+        stream, times = body.stream, body.stream.times[kept]
+        part = Stream(times - times[0], stream.positions[kept], stream.orientations[kept])
+        return replace(body, stream=part)
+
     return replace(
-        capture,
-        sensors=tuple(replace(s, stream=_cut_stream(s.stream, kept)) for s in capture.sensors),
-        objects=tuple(replace(o, stream=_cut_stream(o.stream, kept)) for o in capture.objects),
+        capture, sensors=tuple(map(cut, capture.sensors)), objects=tuple(map(cut, capture.objects))
     )
-
-
-def _cut_stream(stream: Stream, kept: np.ndarray) -> Stream:
-    times = stream.times[kept]
-    return Stream(times - times[0], stream.positions[kept], stream.orientations[kept])
 
 
 def _head(capture: Capture, completion: Completion) -> Sensor:
@@ -327,7 +329,9 @@ def _head(capture: Capture, completion: Completion) -> Sensor:
     assert completion.place is not None
     human = Human.of(measures_of(capture.agent))
     turn = Rotation.from_euler("z", completion.heading_deg, degrees=True)
-    eyes = np.array([*completion.place, completion.floor_m]) + turn.apply(eyes_in_body(human))
+    eyes = np.array([*completion.place, completion.floor_m]) + turn.apply(
+        eyes_between(human.measures)
+    )
     frames = len(capture.times)
     quaternion = turn.as_quat(scalar_first=True)
     spots, turns = (np.tile(row, (frames, 1)) for row in (eyes, quaternion))
@@ -348,41 +352,19 @@ def _mirrored_hand(capture: Capture, hand: str, thing: str, heading_deg: float) 
     (sensor, *_), body = known, capture.tag_object(thing)
     if body.shape is None:
         raise CaparError(f"object {thing!r} has no shape whose middle plane is known")
-    turns = Rotation.from_quat(_filled(body.stream.orientations), scalar_first=True)
-    middle = _filled(body.stream.positions) + turns.apply(body.shape.bounds.mean(axis=0))
-    heading = np.radians(heading_deg)
-    left = np.array([-np.sin(heading), np.cos(heading), 0.0])
-    local = turns[0].inv().apply(left)
-    normal = turns.apply(np.eye(3)[int(np.argmax(np.abs(local)))])
-    return replace(
-        sensor,
-        name=hand,
-        side=side,
-        link=sensor.link.replace(seen, side),
-        stream=_reflected(sensor.stream, middle, normal),
-        shape=mirrored_shape(sensor.shape),
+    stream, frames = body.stream, np.arange(len(body.stream.times))
+    known_frames = np.flatnonzero(~stream.lost)
+    spots, quaternions = (  # the lost ones between known ones
+        np.stack([np.interp(frames, known_frames, c[known_frames]) for c in rows.T], axis=1)
+        for rows in (stream.positions, stream.orientations)
     )
-
-
-def _reflected(
-    stream: Stream, origins: Float[np.ndarray, "#frames 3"], normals: Float[np.ndarray, "#frames 3"]
-) -> Stream:
-    """A stream as a mirror shows it, which may be elsewhere at every frame."""
-    planes = np.eye(3) - 2.0 * np.einsum("fi,fj->fij", normals, normals)
-    spots = np.einsum("fij,fj->fi", planes, stream.positions - origins) + origins
-    turns, known = np.full_like(stream.orientations, np.nan), ~stream.lost
-    before = Rotation.from_quat(stream.orientations[known], scalar_first=True).as_matrix()
-    planes = np.broadcast_to(planes, (len(known), 3, 3))
-    turned = Rotation.from_matrix(planes[known] @ before @ LOCAL)
-    turns[known] = turned.as_quat(scalar_first=True)
-    return Stream(np.array(stream.times), spots, turns)
-
-
-def _filled(rows: Float[np.ndarray, "frames columns"]) -> Float[np.ndarray, "frames columns"]:
-    """The rows with the lost ones between known ones."""
-    frames = np.arange(len(rows))
-    known = np.flatnonzero(~np.isnan(rows[:, 0]))
-    return np.stack([np.interp(frames, known, column[known]) for column in rows.T], axis=1)
+    turns = Rotation.from_quat(quaternions, scalar_first=True)
+    middle = spots + turns.apply(body.shape.bounds.mean(axis=0))
+    heading = np.radians(heading_deg)
+    local = turns[0].inv().apply([-np.sin(heading), np.cos(heading), 0.0])
+    normal = turns.apply(np.eye(3)[int(np.argmax(np.abs(local)))])
+    link = sensor.link.replace(seen, side)
+    return replace(_reflected(sensor, middle, normal), name=hand, side=side, link=link)
 
 
 def _table(path: Path, table: Mapping[str, Any], name: str) -> dict[str, Any]:
@@ -403,10 +385,8 @@ def joint_capture_of(made: JointMotion, *, name: str) -> Capture:
 def _names(source: Source) -> dict[str, str]:
     """What a performer's sensors were called in the recording."""
     names = {f"{side}_hand": hand.sensor for side, hand in source.hands.items()}
-    heads = [sensor.name for sensor in source.capture.sensors if sensor.end_effector == "head"]
-    eyes = [sensor.name for sensor in source.capture.sensors if sensor.end_effector == "eyes"]
-    names |= {"head": heads[0]}
-    return names | {"eyes": eyes[0] if eyes else f"{heads[0]}_eyes"}
+    ends = {sensor.end_effector: sensor.name for sensor in reversed(source.capture.sensors)}
+    return {**names, "head": ends["head"], "eyes": ends.get("eyes", f"{ends['head']}_eyes")}
 
 
 def write_joint_motion(made: JointMotion, capture: Capture, folder: Path) -> None:
@@ -447,8 +427,17 @@ def capture_of_steps(made: Stepping, *, name: str, agent: str) -> Capture:
         moved, name=name, seed=0, tracker=PERFECT, sensors=(*worn, "head"), eye_tracker=False,
         agent=_agent(agent, human),
     )  # fmt: skip
-    sensors = tuple(_shod(made, sensor) for sensor in capture.sensors)
-    return replace(capture, sensors=sensors)
+    sensors = []
+    for sensor in capture.sensors:
+        if sensor.end_effector == "foot":  # with the surface of the foot, in the sensor's frame
+            names = (f"{sensor.side}_foot", f"{sensor.side}_toes")
+            surface = segment_surface(human.measures, names, names[0])
+            vertices = np.array(surface.vertices) - human.model.site(f"sensor_{names[0]}").pos
+            shape = Shape(vertices, np.array(surface.faces), description="foot")
+            sensors.append(replace(sensor, shape=shape))
+        else:
+            sensors.append(sensor)
+    return replace(capture, sensors=tuple(sensors))
 
 
 def write_steps(made: Stepping, capture: Capture, folder: Path) -> None:
@@ -459,14 +448,3 @@ def write_steps(made: Stepping, capture: Capture, folder: Path) -> None:
         for first, last in runs(bears)
     ]
     write_bundle(capture, Truth(tuple(sorted(contacts)), (), (), ()), folder)
-
-
-def _shod(made: Stepping, sensor: Sensor) -> Sensor:
-    """A foot's sensor with the surface of the foot, in the sensor's frame."""
-    if sensor.end_effector != "foot":
-        return sensor
-    names = (f"{sensor.side}_foot", f"{sensor.side}_toes")
-    surface = segment_surface(made.human.measures, names, names[0])
-    seat = made.human.model.site(f"sensor_{names[0]}").pos
-    shape = Shape(np.array(surface.vertices) - seat, np.array(surface.faces), description="foot")
-    return replace(sensor, shape=shape)

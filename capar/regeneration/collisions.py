@@ -1,5 +1,6 @@
 """Distances between a body and the objects of a scene, and keeping limbs out of them."""
 
+import itertools
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 
@@ -46,7 +47,14 @@ class Surroundings:
         self.scene = scene
         spec = body_spec(human.measures)
         for name, thing in scene.things.items():
-            _add_thing(spec, name, np.array(thing.shape.vertices))
+            hull = trimesh.convex.convex_hull(np.array(thing.shape.vertices))
+            mesh = spec.add_mesh(name=f"mesh_{name}")
+            mesh.uservert = np.array(hull.vertices).ravel()
+            mesh.userface = np.array(hull.faces).ravel()
+            mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+            body = spec.worldbody.add_body(name=f"thing_{name}", mocap=True)
+            kind = mujoco.mjtGeom.mjGEOM_MESH
+            body.add_geom(type=kind, meshname=mesh.name, contype=0, conaffinity=0)
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
         self.bodies = {n: self.model.body(f"thing_{n}").mocapid[0] for n in scene.things}
@@ -63,10 +71,6 @@ class Surroundings:
             for name in scene.things
             if not scene.stops(part, name)
         }
-        self.joined: dict[str, set[str]] = {}
-        for rider, base in scene.fastened.items():
-            self.joined.setdefault(rider, set()).add(base)
-            self.joined.setdefault(base, set()).add(rider)
         self.hollow = {n: _surface_points(t.shape) for n, t in scene.things.items()}
 
     def pose(
@@ -108,9 +112,7 @@ class Surroundings:
     def gap(self, geom: int, name: str, most_m: float = NEAR_M) -> float:
         """How far a shape of the body is from an object; larger distances are not measured [m]."""
         found = self._distance(geom, self.geoms[name])
-        if not self._in_hull(found, name):
-            return found
-        return max(found, self._apart(geom, name, most_m))
+        return max(found, self._apart(geom, name, most_m)) if found < 0.0 else found
 
     def slope(self, geom: int, name: str) -> Float[np.ndarray, "dofs"]:
         """How that distance changes with the body's joints."""
@@ -118,23 +120,18 @@ class Surroundings:
         ends = np.zeros(6)
         found = mujoco.mj_geomDistance(self.model, self.data, geom, self.geoms[name], NEAR_M, ends)
         spot, normal = ends[:3], (ends[3:] - ends[:3]) * np.sign(found)
-        if self._in_hull(found, name) and self._apart(geom, name, NEAR_M) >= found:
+        if found < 0.0 and self._apart(geom, name, NEAR_M) >= found:
             spot, normal = self._nearest(geom, name)
         moves = np.empty((3, self.model.nv))
         mujoco.mj_jac(self.model, self.data, moves, None, spot, self.model.geom_bodyid[geom])
         return np.asarray(-normal / max(float(np.linalg.norm(normal)), 1e-12) @ moves)
 
-    def _in_hull(self, distance_m: float, name: str) -> bool:
-        return distance_m < 0.0 and self.hollow[name] is not None
-
     def things_near(self) -> list[Pair]:
         """Distances between objects near each other, but for those on a hinge or a rail."""
-        names = sorted(self.geoms)
+        joined = {frozenset(pair) for pair in self.scene.fastened.items()}
         out = []
-        for number, first in enumerate(names):
-            for second in names[number + 1 :]:
-                if second in self.joined.get(first, ()):
-                    continue
+        for first, second in itertools.combinations(sorted(self.geoms), 2):
+            if frozenset((first, second)) not in joined:
                 found = self._distance(self.geoms[first], self.geoms[second])
                 if found < NEAR_M:
                     out.append(Pair(found, first, second))
@@ -149,7 +146,12 @@ class Surroundings:
         return float(mujoco.mj_geomDistance(self.model, self.data, first, second, NEAR_M, None))
 
     def _apart(self, geom: int, name: str, most_m: float) -> float:
-        """How far a hollow object's surface is from a part, negative where it is inside [m]."""
+        """How far a hollow object's surface is from a part, negative where it is inside [m].
+
+        Without end where the object is not hollow.
+        """
+        if self.hollow[name] is None:
+            return -np.inf
         points = self._surface(geom, name, most_m)
         return float(_depths(points, self.model, geom).min()) if len(points) else most_m
 
@@ -169,7 +171,8 @@ class Surroundings:
         tree = self.hollow[name]
         assert tree is not None
         mocap = self.bodies[name]
-        thing = _rotation(self.data.mocap_quat[mocap]).as_matrix()
+        quaternion = np.array(self.data.mocap_quat[mocap])
+        thing = Rotation.from_quat(quaternion, scalar_first=True).as_matrix()
         middle = (self.data.geom_xpos[geom] - self.data.mocap_pos[mocap]) @ thing
         near = tree.query_ball_point(middle, self.model.geom_rbound[geom] + most_m)
         turn = self.data.geom_xmat[geom].reshape(3, 3)
@@ -197,10 +200,6 @@ def inner_gap(hollow: Shape, thing: Shape, seat: RigidTransform) -> float | None
     points = seat.inv().apply(surface.data)
     ahead = points @ hull.face_normals.T
     return float((ahead - (hull.face_normals * hull.triangles[:, 0]).sum(axis=1)).max(axis=1).min())
-
-
-def _rotation(quaternion: Float[np.ndarray, "4"]) -> Rotation:
-    return Rotation.from_quat(np.array(quaternion), scalar_first=True)
 
 
 def _depths(
@@ -233,16 +232,6 @@ def _surface_points(shape: Shape) -> KDTree | None:
     return KDTree(np.concatenate([np.array(shape.vertices), np.array(points)]))
 
 
-def _add_thing(spec: mujoco.MjSpec, name: str, vertices: Float[np.ndarray, "vertices 3"]) -> None:
-    hull = trimesh.convex.convex_hull(vertices)
-    mesh = spec.add_mesh(name=f"mesh_{name}")
-    mesh.uservert = np.array(hull.vertices).ravel()
-    mesh.userface = np.array(hull.faces).ravel()
-    mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
-    body = spec.worldbody.add_body(name=f"thing_{name}", mocap=True)
-    body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh.name, contype=0, conaffinity=0)
-
-
 CLEAR_M = 0.001
 """How far the surface of a limb is kept from that of an object [m]."""
 
@@ -266,7 +255,8 @@ class ClearTask(mink.Task):
         self.pairs = [
             (geom, name)
             for geom, name in around.pairs()
-            if not _is_hand(part := around.parts[geom]) and not (part in HEAD and name in met)
+            if (part := around.parts[geom]).partition("_")[2] not in (*HAND_SEGMENTS, "thumb")
+            and not (part in HEAD and name in met)
         ]
         self.clear_m = np.array(
             [HEAD_CLEAR_M if around.parts[geom] in HEAD else CLEAR_M for geom, _ in self.pairs]
@@ -315,7 +305,3 @@ class ClearTask(mink.Task):
         self.gaps[:] = np.inf
         for row in np.flatnonzero(apart < HEAD_CLEAR_M):
             self.gaps[row] = self.around.gap(*self.pairs[row], HEAD_CLEAR_M)
-
-
-def _is_hand(part: str) -> bool:
-    return part.partition("_")[2] in (*HAND_SEGMENTS, "thumb")

@@ -12,7 +12,7 @@ from capar.model.geometry import transforms
 from capar.regeneration import planning
 from capar.regeneration.body_frames import BodyFrames, body_frames, head_path, head_ratio, rest_pose
 from capar.regeneration.goals import Goal
-from capar.regeneration.grips import Grip, Turn
+from capar.regeneration.grips import Grip, Turn, recorded_grip
 from capar.regeneration.motion import Motion, perform_plan
 from capar.regeneration.planning import SETTLE_S, Plan
 from capar.regeneration.quality import Measure, Quality, quality
@@ -47,7 +47,7 @@ def mapped_plan(source: Source, human: Human) -> Plan:
         human=human,
         frames=new,
         goals={name: goals for name in things if (goals := _goals(source, things, name))},
-        grips=tuple(_grip(source, hold) for hold in source.holds),
+        grips=tuple(Grip(h, recorded_grip(source, h), Turn(), 0.0) for h in source.holds),
         detours={},
         hands=hands,
         style=own_style(source),
@@ -150,15 +150,6 @@ def _goals(source: Source, things: Mapping[str, RigidTransform], name: str) -> l
     own = [span for span in spans if span.thing == name]
     frames = sorted({frame for span in own for frame in (span.first, span.last)})
     return [Goal(name, frame, things[name][frame], "as recorded") for frame in frames]
-
-
-def _grip(source: Source, hold: Hold) -> Grip:
-    """How the recorded hand lay on the object, in the median of the hold."""
-    part = slice(hold.first, hold.last + 1)
-    poses = source.paths[hold.thing][part].inv() * source.hands[hold.side].path[part]
-    spot = np.median(poses.translation, axis=0)
-    pose = RigidTransform.from_components(spot, poses.rotation.mean())
-    return Grip(hold, pose, Turn(), 0.0)
 
 
 def departures(motion: Motion) -> tuple[Measure, ...]:

@@ -2,7 +2,7 @@
 
 import itertools
 import tomllib
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from importlib import resources
@@ -20,7 +20,7 @@ from capar.regeneration.quality import Quality, failures
 from capar.regeneration.scenes import PlanError, Scene
 from capar.regeneration.search import regenerate
 from capar.regeneration.sources import Source
-from capar.regeneration.styles import SHORT_M, Kind, Style, arc_shares, paced, retimed
+from capar.regeneration.styles import SHORT_M, Kind, Style, arc_shares, paced, retimed, smoothed
 
 POLES = {
     "time": ("sustained", "sudden"),
@@ -119,24 +119,20 @@ def adverbs() -> dict[str, Effort]:
 
 def effort_of_words(words: Iterable[str]) -> Effort | None:
     """The effort that some words ask for together, no further than to a pole; None if none does."""
-    found = [adverbs()[word] for word in words if word in adverbs()]
-    if not found:
-        return None
-    sums = {name: sum(effort.values[name] for effort in found) for name in Effort().values}
-    return Effort(**{name: max(-1.0, min(1.0, value)) for name, value in sums.items()})
+    found = [adverbs()[word].values for word in words if word in adverbs()]
+    sums = {name: sum(values[name] for values in found) for name in POLES}
+    return Effort(**{n: max(-1.0, min(1.0, v)) for n, v in sums.items()}) if found else None
 
 
 def told_of_words(words: Iterable[str], *, stated: bool) -> list[str]:
     """What is reported of the effect of some words."""
-    out = []
-    for word in words:
-        if word not in adverbs():
-            out.append(f"{word!r} has no effect")
-        elif stated:
-            out.append(f"{word!r} has no effect, since an effort is stated")
-        else:
-            out.append(f"{word!r} asks for the effort {adverbs()[word]}")
-    return out
+    return [
+        f"{word!r} asks for the effort {adverbs()[word]}"
+        if word in adverbs() and not stated
+        else f"{word!r} has no effect"
+        + (", since an effort is stated" if word in adverbs() else "")
+        for word in words
+    ]
 
 
 SLOW = 0.05
@@ -221,33 +217,25 @@ def shaped(
     chord = spots[-1] - spots[0]
     length = float(np.linalg.norm(chord))
     along = (spots - spots[0]) @ chord / length**2
-    straight = spots[0] + np.outer(along, chord)
-    aside = spots - straight
-    steps = np.linalg.norm(np.diff(spots, axis=0), axis=1)
+    aside = spots - spots[0] - np.outer(along, chord)
+    moves = np.diff(spots, axis=0)
+    steps = np.linalg.norm(moves, axis=1)
     share = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
     bump = 16.0 * share**2 * (1.0 - share) ** 2
     out = -max(space, 0.0) * aside
     if space < 0.0:
-        wider = WIDER * aside + length * BULGE * np.outer(bump, _sideways(chord))
-        other = WIDER * aside - length * BULGE * np.outer(bump, _sideways(chord))
-        added = wider if _lengthens(spots, wider) >= _lengthens(spots, other) else other
-        out = -space * added
+        across = np.array([-chord[1], chord[0], 0.0])  # level; to the left where it goes up
+        size = float(np.linalg.norm(across))
+        across = across / size if size > 1e-9 else np.array([0.0, 1.0, 0.0])
+
+        def lengthens(added: Float[np.ndarray, "frames 3"]) -> float:
+            more = np.einsum("ij,ij->i", moves, np.diff(added, axis=0))
+            return float(np.sum(more / np.maximum(steps, 1e-12)))
+
+        bulge = length * BULGE * np.outer(bump, across)
+        out = -space * max((WIDER * aside + bulge, WIDER * aside - bulge), key=lengthens)
     out = out - weight * LIFT * length * np.outer(bump, [0.0, 0.0, 1.0])
     return np.asarray(spots + free[:, None] * out)
-
-
-def _sideways(chord: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
-    """Level and across a path; to the left of x where that goes straight up."""
-    across = np.array([-chord[1], chord[0], 0.0])
-    size = float(np.linalg.norm(across))
-    return np.asarray(across / size) if size > 1e-9 else np.array([0.0, 1.0, 0.0])
-
-
-def _lengthens(spots: Float[np.ndarray, "frames 3"], added: Float[np.ndarray, "frames 3"]) -> float:
-    """How fast a path becomes longer as something is added to it [m]."""
-    steps, more = np.diff(spots, axis=0), np.diff(added, axis=0)
-    sizes = np.maximum(np.linalg.norm(steps, axis=1), 1e-12)
-    return float(np.sum(np.einsum("ij,ij->i", steps, more) / sizes))
 
 
 ARM_M = 0.1
@@ -263,19 +251,6 @@ ROUND_S = 0.15
 """Free flow rounds the path over so long on both sides of a border between steps [s]."""
 
 
-@dataclass(frozen=True)
-class Stretch:
-    """A part of a path between two events, or between slow borders of steps."""
-
-    first: int
-    last: int
-    pauses: tuple[bool, bool] = (True, True)
-    """Whether it may be paused at its start and at its end: nothing is let go or taken there."""
-
-    ends_free: bool = False
-    """Whether nothing is held in its last frame, nor taken then."""
-
-
 def with_effort(style: Style, source: Source, effort: Effort) -> Style:
     """The style with another effort; events keep their frames and places.
 
@@ -284,92 +259,88 @@ def with_effort(style: Style, source: Source, effort: Effort) -> Style:
     changed here.
     """
     hands, things = dict(style.hands), dict(style.things)
+    borders = {side: _borders(source, side) for side in source.hands}
     for side, path in style.hands.items():
-        edges = hand_edges(source, side)
-        rounded = _rounded(path, source, edges, effort.flow)
-        for stretch in hand_stretches(source, side):
-            part = rounded[stretch.first : stretch.last + 1]
-            rounded = _replaced(rounded, stretch.first, _reshaped(part, stretch, effort))
-        hands[side] = rounded
+        holds = [hold for hold in source.holds if hold.side == side]
+        firsts, lasts = {hold.first for hold in holds}, {hold.last for hold in holds}
+        events = {0, len(source.times) - 1, *firsts, *lasts}
+        hands[side] = _rounded(path, source, events, effort.flow)
+        for first, last in itertools.pairwise(sorted(events | borders[side])):
+            if not any(hold.first <= first and last <= hold.last for hold in holds):
+                pauses = first not in lasts, last not in firsts
+                ends_free = not any(hold.first >= last for hold in holds)
+                free = np.ones(last + 1 - first)
+                hands[side] = _reshaped(
+                    hands[side], first, effort, free, pauses=pauses, ends_free=ends_free
+                )
     recorded = body_frames(source.human, source.scene)
     for name, goals in object_goals(source, source.scene, recorded, recorded).items():
-        frames = sorted({goal.frame for goal in goals})
-        free = _off_ground(style.things[name], frames[0], frames[-1])
-        path = _rounded(style.things[name], source, frames, effort.flow)
-        sides = {hold.side for hold in source.holds if hold.thing == name}
-        borders = {border for side in sides for border in _borders(source, side)}
-        edges = sorted({*frames, *(b for b in borders if frames[0] < b < frames[-1])})
-        for first, last in itertools.pairwise(edges):
-            part = path[first : last + 1]
-            made = _reshaped(part, Stretch(first, last), effort, free[first : last + 1])
-            path = _replaced(path, first, made)
+        events = {goal.frame for goal in goals}
+        first, last = min(events), max(events)
+        path, heights = style.things[name], style.things[name].translation[:, 2]
+        # It stays on what bears it, and goes another way the freer the higher it is above that.
+        rise = np.clip((heights - max(heights[first], heights[last])) / OFF_M - 0.2, 0.0, 1.0)
+        free = rise**2 * (3.0 - 2.0 * rise)
+        path = _rounded(path, source, events, effort.flow)
+        acting = {hold.side for hold in source.holds if hold.thing == name}
+        inner = {b for side in acting for b in borders[side] if first < b < last}
+        for start, end in itertools.pairwise(sorted(events | inner)):
+            path = _reshaped(path, start, effort, free[start : end + 1])
         things[name] = path
     return replace(style, hands=hands, things=things)
 
 
-def hand_edges(source: Source, side: str) -> list[int]:
-    """Frames at which a hand takes something or lets it go, and the first and last of all."""
-    holds = [hold for hold in source.holds if hold.side == side]
-    frames = {frame for hold in holds for frame in (hold.first, hold.last)}
-    return sorted({0, len(source.times) - 1, *frames})
-
-
-def hand_stretches(source: Source, side: str) -> Iterator[Stretch]:
-    """The intervals in which a hand holds nothing, in order."""
-    holds = [hold for hold in source.holds if hold.side == side]
-    firsts, lasts = {hold.first for hold in holds}, {hold.last for hold in holds}
-    edges = sorted({*hand_edges(source, side), *_borders(source, side)})
-    for first, last in itertools.pairwise(edges):
-        if not any(hold.first <= first and last <= hold.last for hold in holds):
-            pauses = first not in lasts, last not in firsts
-            later = any(hold.first >= last for hold in holds)
-            yield Stretch(first, last, pauses, not later)
-
-
-def _borders(source: Source, side: str) -> list[int]:
+def _borders(source: Source, side: str) -> set[int]:
     """Frames between steps of a hand at which it is slow."""
     hand = source.hands[side]
     steps = np.linalg.norm(np.diff(hand.path.translation, axis=0), axis=1)
     slow = SLOWLY * float(steps.max())
     ends = {part.last for part in source.observation.segments if part.ee == hand.sensor}
-    return sorted(frame for frame in ends if 0 < frame < len(steps) and steps[frame - 1] < slow)
-
-
-def turned_way(path: RigidTransform) -> Float[np.ndarray, "frames"]:
-    """Length of a path up to each frame, turning included [m], strictly increasing."""
-    gone = np.linalg.norm(np.diff(path.translation, axis=0), axis=1)
-    turned = (path[1:].rotation * path[:-1].rotation.inv()).magnitude()
-    return np.concatenate([[0.0], np.cumsum(np.hypot(gone, ARM_M * turned) + 1e-9)])
+    return {frame for frame in ends if 0 < frame < len(steps) and steps[frame - 1] < slow}
 
 
 def _reshaped(
-    path: RigidTransform,
-    stretch: Stretch,
+    whole: RigidTransform,
+    first: int,
     effort: Effort,
-    free: Float[np.ndarray, "frames"] | None = None,
+    free: Float[np.ndarray, "part"],
+    *,
+    pauses: tuple[bool, bool] = (True, True),
+    ends_free: bool = False,
 ) -> RigidTransform:
-    """A interval with another effort; as it is where it is too short to have one."""
-    length = turned_way(path)
+    """A path with another effort from a frame on; as it is where that part is too short.
+
+    Args:
+        whole: The path.
+        first: Where the part begins.
+        effort: The effort.
+        free: How far each of the part's frames may go another way [1].
+        pauses: Whether it may be paused at its start and at its end: nothing is let go or taken.
+        ends_free: Whether nothing is held in its last frame, nor taken then or later.
+    """
+    part = slice(first, first + len(free))
+    path = whole[part]
+    gone = np.linalg.norm(np.diff(path.translation, axis=0), axis=1)
+    turned = (path[1:].rotation * path[:-1].rotation.inv()).magnitude()
+    length = np.concatenate([[0.0], np.cumsum(np.hypot(gone, ARM_M * turned) + 1e-9)])
     if length[-1] < SHORT_M or len(path) < 4:
-        return path
+        return whole
     frames = np.arange(len(path), dtype=float)
     shares = timed(length / length[-1], effort.time, effort.weight)
-    shares = paused(shares, effort.flow, stretch.pauses)
+    shares = paused(shares, effort.flow, pauses)
     chord = path.translation[-1] - path.translation[0]
-    far = float(np.linalg.norm(chord)) >= SHORT_M
-    beyond = np.zeros(len(path))
-    if stretch.ends_free and far:
-        gone, beyond = overshot(len(path), effort.flow)
-        shares = np.interp(gone, frames / frames[-1], shares)
+    far, beyond = float(np.linalg.norm(chord)) >= SHORT_M, np.zeros(len(path))
+    if ends_free and far:
+        share, beyond = overshot(len(path), effort.flow)
+        shares = np.interp(share, frames / frames[-1], shares)
     at = np.interp(shares, length / length[-1], frames)
     spots = np.stack([np.interp(at, frames, column) for column in path.translation.T], axis=1)
-    turns: Rotation = Slerp(frames, path.rotation)(at)
     if far:
-        free = np.ones(len(path)) if free is None else np.interp(at, frames, free)
-        covered = arc_shares(spots)
-        spots = retimed(shaped(spots, effort.space, effort.weight, free), covered)
-        spots = spots + np.outer(beyond, chord)
-    return RigidTransform.from_components(spots, turns)
+        made = shaped(spots, effort.space, effort.weight, np.interp(at, frames, free))
+        spots = retimed(made, arc_shares(spots)) + np.outer(beyond, chord)
+    places, turns = whole.translation.copy(), whole.rotation.as_quat(canonical=False)
+    places[part], turns[part] = spots, Slerp(frames, path.rotation)(at).as_quat()
+    return RigidTransform.from_components(places, Rotation.from_quat(turns))
 
 
 def _rounded(
@@ -379,31 +350,13 @@ def _rounded(
     half = round(ROUND_S * source.rate_hz * max(-flow, 0.0))
     if half < 1 or len(path) < 4:
         return path
-    window = np.hanning(2 * half + 3)[1:-1]
-    padded = np.pad(path.translation, ((half, half), (0, 0)), mode="edge")
-    smooth = np.stack(
-        [np.convolve(column, window / window.sum(), mode="valid") for column in padded.T], axis=1
-    )
-    near = np.min([np.abs(np.arange(len(path)) - frame) for frame in pinned], axis=0)
-    inside = (np.arange(len(path)) >= min(pinned)) & (np.arange(len(path)) <= max(pinned))
+    frames = np.arange(len(path))
+    near = np.min([np.abs(frames - frame) for frame in pinned], axis=0)
+    inside = (frames >= min(pinned)) & (frames <= max(pinned))
     share = np.clip(near / (4.0 * half), 0.0, 1.0) * inside
     share = share**2 * (3.0 - 2.0 * share)
-    spots = path.translation + share[:, None] * (smooth - path.translation)
-    return RigidTransform.from_components(spots, path.rotation)
-
-
-def _off_ground(path: RigidTransform, first: int, last: int) -> Float[np.ndarray, "frames"]:
-    """How far an object may go another way at each frame [1]: not while it is on what bears it."""
-    heights = path.translation[:, 2]
-    rise = np.clip((heights - max(heights[first], heights[last])) / OFF_M - 0.2, 0.0, 1.0)
-    return np.asarray(rise**2 * (3.0 - 2.0 * rise))
-
-
-def _replaced(path: RigidTransform, first: int, part: RigidTransform) -> RigidTransform:
-    """The path with another part from a frame on."""
-    after = first + len(part)
-    pieces = [path[:first], part, path[after:]]
-    return RigidTransform.concatenate([piece for piece in pieces if len(piece)])
+    off = smoothed(path.translation, half) - path.translation
+    return RigidTransform.from_components(path.translation + share[:, None] * off, path.rotation)
 
 
 SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)
@@ -455,9 +408,9 @@ def regenerate_in_manner(
     refused: PlanError | None = None
     for share in SHARES:
         part = effort.scaled(share)
-        recorded_s = float(source.times[-1] - source.times[0])
+        lasts_s = float(source.times[-1] - source.times[0]) * 2.0 ** (-DOUBLINGS * part.time)
         try:
-            timed = paced(source, duration_s or recorded_s * 2.0 ** (-DOUBLINGS * part.time))
+            timed = paced(source, duration_s or lasts_s)
             motion, quality = regenerate(timed, human, scene, with_effort(style, timed, part))
         except PlanError as error:
             refused = error

@@ -7,7 +7,6 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.scenes import Thing
 from capar.model.facts import Displaced
 from capar.model.geometry import rotations
 from capar.model.locations import restored
@@ -48,14 +47,6 @@ class Constraint:
     axis: Float[np.ndarray, "3"]
     """Unit direction of the line, or normal of the plane."""
 
-    def scaled(self, ratio: Float[np.ndarray, "3"]) -> "Constraint":
-        """On an object of another size: the same place in its own measures.
-
-        Args:
-            ratio: The new size over the old one, axis by axis [1].
-        """
-        return replace(self, point=self.point * ratio)
-
     def strays(
         self,
         start: RigidTransform,
@@ -90,11 +81,15 @@ def constraints_of(source: Source) -> dict[str, Constraint]:
             shape = source.capture.tag_object(guide.object).shape
             assert shape is not None  # checked when the source was made
             place, turn = restored(guide.object_nlt, shape.size)
-            upright = _upright(source, guide.object)
+            stream = source.capture.tag_object(guide.object).stream
+            known = ~np.isnan(stream.positions).any(axis=1)
+            captured = rotations(stream.orientations[known])
+            # What takes directions of the captured object's frame to the frame of the object.
+            path = source.paths[guide.object].rotation[np.flatnonzero(known)]
+            upright = (path.inv() * captured).mean()
             axis = upright.apply(rotations(turn).apply([1.0, 0.0, 0.0]))
-            out[guide.object] = Constraint(
-                guide.kind, guide.object, guide.base, upright.apply(place), axis
-            )
+            point = upright.apply(place)
+            out[guide.object] = Constraint(guide.kind, guide.object, guide.base, point, axis)
     return out
 
 
@@ -118,10 +113,10 @@ def planes_of(source: Source) -> dict[str, Constraint]:
 
 
 def scene_constraints(source: Source, scene: Scene) -> dict[str, Constraint]:
-    """Every constraint in the measures of the objects of a scene."""
-    found = {**planes_of(source), **constraints_of(source)}
+    """Every constraint at the same place of the objects of a scene, in their own measures."""
     return {
-        name: constraint.scaled(_ratio(source, scene, name)) for name, constraint in found.items()
+        name: replace(line, point=line.point * _ratio(source, scene, name))
+        for name, line in {**planes_of(source), **constraints_of(source)}.items()
     }
 
 
@@ -133,20 +128,23 @@ def guided_poses(
     It turns by the recorded angles, or goes as far in its own measures; while nobody holds it, it
     stays.
     """
-    before = constraints_of(source)[name]
-    ratio = _ratio(source, scene, name)
-    course, far = np.zeros(len(recorded)), 0.0
+    line, ratio = scene_constraints(source, scene)[name], _ratio(source, scene, name)
+    along, far = np.zeros(len(recorded)), 0.0
     for first, last in spans:
-        gone = _course(before, recorded[first : last + 1])
-        course[first : last + 1] = far + gone
+        moved = recorded[first].inv() * recorded[first : last + 1]
+        if line.kind == RAIL:
+            gone = moved.translation @ line.axis
+        else:
+            gone = np.unwrap(moved.rotation.as_rotvec() @ line.axis)
+        along[first : last + 1] = far + gone
         far += float(gone[-1])
-        course[last + 1 :] = far
-    start, line = scene.thing(name).pose, before.scaled(ratio)
+        along[last + 1 :] = far
+    start = scene.thing(name).pose
     if line.kind == RAIL:
         longer = float(np.linalg.norm(line.axis * ratio))
-        return start * RigidTransform.from_translation(np.outer(longer * course, line.axis))
+        return start * RigidTransform.from_translation(np.outer(longer * along, line.axis))
     there = RigidTransform.from_translation(line.point)
-    turned = RigidTransform.from_rotation(Rotation.from_rotvec(np.outer(course, line.axis)))
+    turned = RigidTransform.from_rotation(Rotation.from_rotvec(np.outer(along, line.axis)))
     return start * there * turned * there.inv()
 
 
@@ -160,22 +158,6 @@ def flattened(path: RigidTransform) -> RigidTransform:
     yaw = 2.0 * np.arctan2(about[:, 3], about[:, 0])
     turns = Rotation.from_rotvec(np.outer(yaw, [0.0, 0.0, 1.0])) * path.rotation[0]
     return RigidTransform.from_components(spots, turns)
-
-
-def _course(line: Constraint, path: RigidTransform) -> Float[np.ndarray, "frames"]:
-    """How far an object has turned [rad] or gone [m] along its line since the first frame."""
-    moved = path[0].inv() * path
-    if line.kind == RAIL:
-        return np.asarray(moved.translation @ line.axis)
-    return np.unwrap(moved.rotation.as_rotvec() @ line.axis)
-
-
-def _upright(source: Source, name: str) -> Rotation:
-    """What takes directions of the captured object's frame to the frame of the object."""
-    stream = source.capture.tag_object(name).stream
-    known = ~np.isnan(stream.positions).any(axis=1)
-    captured = rotations(stream.orientations[known])
-    return (source.paths[name].rotation[np.flatnonzero(known)].inv() * captured).mean()
 
 
 def _ratio(source: Source, scene: Scene, name: str) -> Float[np.ndarray, "3"]:
@@ -221,12 +203,14 @@ def object_goals(
     out: dict[str, list[Goal]] = {}
     constraints = scene_constraints(source, scene)
     beside = {companion.hold.thing for companion in source.co_held}
-    for name in source.paths:
+    statures = [body.human.measures["stature"] for body in (new, old)]
+    ratio = float(statures[0] / statures[1]) if force is ForceKind.SIMILAR else 1.0
+    turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
+    for name, path in source.paths.items():
         kind = constraints[name].kind if name in constraints else ""
         if kind in {HINGE, RAIL}:
             out[name] = list(_guided_goals(source, scene, name, kind))
-            continue
-        if name in beside:
+        if kind in {HINGE, RAIL} or name in beside:
             continue
         start = 0, scene.thing(name).pose
         for first, last in handled(source, name):
@@ -234,18 +218,20 @@ def object_goals(
             pose = goals[-1].pose if goals else scene.thing(name).pose
             came, thrown = throw_of(source, name, last=first), throw_of(source, name, first=last)
             if came:
-                ratio = _flight_ratio(old, new, force)
                 as_far = caught_pose(source, scene, came, pose, 1.0)
                 pose = caught_pose(source, scene, came, pose, ratio)
                 nearer = RigidTransform.from_translation(pose.translation - as_far.translation)
-                start = start[0], nearer * start[1]
-                goals.append(Goal(name, first, pose, "caught there"))
-            else:
-                start = first, pose
-                goals.append(Goal(name, first, pose, "stays where it is"))
-            goals += _head_goals(source, scene, old, new, (name, first, last))
-            if thrown:
-                down = _let_go(source, scene, name, (first, last), pose)
+            start = (start[0], nearer * start[1]) if came else (first, pose)
+            goals.append(Goal(name, first, pose, "caught there" if came else "stays where it is"))
+            met = (one for one in source.meetings if first <= one.first <= last)
+            for meeting in (one for one in met if one.thing == name):
+                at = _at_head(source, scene, old, new, meeting)
+                frames = dict.fromkeys((meeting.first, min(meeting.last, last)))
+                reason = f"at the {meeting.part}, in its own measures"
+                goals += [Goal(name, frame, at, reason) for frame in frames]
+            if thrown:  # as far in metres from where the hand took it as it was
+                there = _displaced(path, (first, last), pose, turn)
+                down = Goal(name, last, there, "thrown there")
             else:
                 down = _put_down(source, scene, name, (start[0], last), start[1])
             if kind == PLANE:
@@ -260,38 +246,26 @@ def object_goals(
             if goals[-1].frame < last:
                 goals.append(replace(down, reason="stays there"))
     for companion in source.co_held:
-        out.setdefault(companion.hold.thing, []).extend(_beside_goals(scene, companion, out))
+        out[companion.hold.thing] = _beside_goals(scene, companion, out)
     return out
-
-
-def _head_goals(
-    source: Source, scene: Scene, old: BodyFrames, new: BodyFrames, held: tuple[str, int, int]
-) -> Iterator[Goal]:
-    """Where an object is at the head while it is held, which is stated from frame to frame."""
-    name, first, last = held
-    for meeting in source.meetings:
-        if meeting.thing == name and first <= meeting.first <= last:
-            at = _at_head(source, scene, old, new, meeting)
-            for frame in dict.fromkeys((meeting.first, min(meeting.last, last))):
-                yield Goal(name, frame, at, f"at the {meeting.part}, in its own measures")
 
 
 def _beside_goals(scene: Scene, companion: CoHeld, known: Mapping[str, list[Goal]]) -> list[Goal]:
     """The goals of what lies in a hand beside another object, as that one has them."""
-    ride, name = companion.ride, companion.hold.thing
-    seat = scene.thing(ride.bearer).pose.inv() * scene.thing(name).pose
-    led = [goal for goal in known[ride.bearer] if ride.first <= goal.frame <= ride.last]
-    out = [Goal(name, companion.hold.first, led[0].pose * seat, "stays where it is")]
-    reason = f"beside {ride.bearer!r} in the hand"
-    out += [Goal(name, goal.frame, goal.pose * seat, reason) for goal in led[1:]]
+    load, name = companion.load, companion.hold.thing
+    own = scene.thing(name).pose
+    seat = scene.thing(load.bearer).pose.inv() * own
+    led = [goal for goal in known[load.bearer] if load.first <= goal.frame <= load.last]
     there = led[-1].pose * seat
-    if support_at(scene, name, scene.thing(name).pose) and not support_at(scene, name, there):
+    if support_at(scene, name, own) and not support_at(scene, name, there):
         x, y, z = there.translation
         raise PlanError(
-            f"{name!r} would be put down at ({x:.2f}, {y:.2f}, {z:.2f}) m beside {ride.bearer!r}, "
+            f"{name!r} would be put down at ({x:.2f}, {y:.2f}, {z:.2f}) m beside {load.bearer!r}, "
             "where nothing supports it; a larger support, or both nearer its middle, would do"
         )
-    return out
+    reason = f"beside {load.bearer!r} in the hand"
+    first = Goal(name, companion.hold.first, led[0].pose * seat, "stays where it is")
+    return [first, *(Goal(name, goal.frame, goal.pose * seat, reason) for goal in led[1:])]
 
 
 def put_down_poses(source: Source, scene: Scene) -> dict[str, RigidTransform]:
@@ -316,23 +290,8 @@ def put_down_poses(source: Source, scene: Scene) -> dict[str, RigidTransform]:
 
 def throw_of(source: Source, name: str, *, first: int = -1, last: int = -1) -> Throw | None:
     """The flight of an object that begins, or ends, in a frame; None where none does."""
-    own = (toss for toss in source.throws if toss.thing == name)
-    return next((toss for toss in own if first == toss.first or last == toss.last), None)
-
-
-def _flight_ratio(old: BodyFrames, new: BodyFrames, force: ForceKind) -> float:
-    """How many times as far as recorded an object flies level from hand to hand [1]."""
-    statures = [body.human.measures["stature"] for body in (new, old)]
-    return float(statures[0] / statures[1]) if force is ForceKind.SIMILAR else 1.0
-
-
-def _let_go(
-    source: Source, scene: Scene, name: str, span: tuple[int, int], pose: RigidTransform
-) -> Goal:
-    """Where an object is thrown from: as far in metres from where the hand took it as it was."""
-    turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
-    there = _displaced(source.paths[name], span, pose, turn)
-    return Goal(name, span[1], there, "thrown there")
+    own = (one for one in source.throws if one.thing == name)
+    return next((one for one in own if first == one.first or last == one.last), None)
 
 
 def _guided_goals(source: Source, scene: Scene, name: str, kind: str) -> Iterator[Goal]:
@@ -382,17 +341,24 @@ def _put_down(
     """As far in metres from where it came from as it was; on another object in that one's size."""
     before, after = (source.paths[name][each] for each in span)
     turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
-    by = turn.apply(after.translation - before.translation)
-    spun = _turned(source.paths[name], *span, turn) * pose.rotation
+    goal, reason = (
+        _displaced(source.paths[name], span, pose, turn),
+        "as far from where it came from as it was [m]",
+    )
     came, support = (support_at(source.scene, name, each) for each in (before, after))
-    spot, reason = pose.translation + by, "as far from where it came from as it was [m]"
-    onto = scene.goals.get(name, support if support != came else "")
+    onto, spot = scene.goals.get(name, support if support != came else ""), goal.translation
     if support and onto:
-        spot = _on(source, scene, name, (support, onto), after)
+        old, new = source.scene.thing(support), scene.thing(onto)
+        local = old.pose.inv().apply(after.translation)
+        low_old, low_new = (s.thing(name).shape.bounds[0, 2] for s in (source.scene, scene))
+        share = (local - old.shape.bounds[0]) / np.maximum(old.size, 1e-9)
+        spot = new.pose.apply(new.shape.bounds[0] + share * new.size)
+        above = local[2] + low_old - old.shape.bounds[1, 2]
+        spot[2] = new.place[2] + new.shape.bounds[1, 2] + above - low_new
         reason = f"at the same place on {onto!r}, in its own measures"
     if name in scene.spots:
         spot, reason = np.asarray(scene.spots[name]), "where it is stated to be put"
-    goal = RigidTransform.from_components(spot, spun)
+    goal = RigidTransform.from_components(spot, goal.rotation)
     if support and not support_at(scene, name, goal):
         x, y, z = spot
         raise PlanError(
@@ -415,50 +381,47 @@ def _leaning_goals(
     sideways in that one's measures. Meanwhile it moves as far in metres as it did.
     """
     turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
-    recorded, reason = source.paths[name], "over {!r}, in its own measures"
-    out: list[Goal] = []
-    for poise in source.leanings:
-        if poise.thing != name or not span[0] <= poise.frames[0] <= span[1]:
-            continue
-        spun = _turned(recorded, span[0], poise.lowest, turn) * ends[0].rotation
-        lowest = RigidTransform.from_components(_leant(source, scene, poise, spun, turn), spun)
-        over: list[RigidTransform] = []
-        for number, frame in enumerate(poise.frames):
-            pose = _displaced(recorded, (poise.lowest, frame), lowest, turn)
-            part = recorded[poise.frames[max(number - 1, 0)] : frame + 1]
-            over.append(over[-1] if over and rests(part, pose, pose) else pose)
-        goals = zip(poise.frames, over, strict=True)
-        out += [Goal(name, f, pose, reason.format(poise.other)) for f, pose in goals]
-        out += _beside(source, name, span, poise, ends, over, turn)
+    recorded, out = source.paths[name], list[Goal]()
+    for leaning in source.leanings:
+        if leaning.thing == name and span[0] <= leaning.frames[0] <= span[1]:
+            spun = _turned(recorded, span[0], leaning.lowest, turn) * ends[0].rotation
+            spot = _leant(source, scene, leaning, spun, turn)
+            lowest = RigidTransform.from_components(spot, spun)
+            over: list[RigidTransform] = []
+            for number, frame in enumerate(leaning.frames):
+                pose = _displaced(recorded, (leaning.lowest, frame), lowest, turn)
+                part = recorded[leaning.frames[max(number - 1, 0)] : frame + 1]
+                over.append(over[-1] if over and rests(part, pose, pose) else pose)
+                reason = f"over {leaning.other!r}, in its own measures"
+                out.append(Goal(name, frame, over[-1], reason))
+            out += _beside(source, name, span, leaning, ends, over, turn)
     return out
 
 
 def _leant(
-    source: Source, scene: Scene, poise: Leaning, spun: Rotation, turn: Rotation
+    source: Source, scene: Scene, leaning: Leaning, spun: Rotation, turn: Rotation
 ) -> Float[np.ndarray, "3"]:
     """Where an object is when it leans over another one, turned like this."""
-    before, after = (each.thing(poise.thing) for each in (source.scene, scene))
-    old, new = (_top(each.thing(poise.other)) for each in (source.scene, scene))
+    before, after = (each.thing(leaning.thing) for each in (source.scene, scene))
+    others = [each.thing(leaning.other) for each in (source.scene, scene)]
+    tops = []
+    for other in others:
+        low, high = other.shape.bounds
+        tops.append(other.pose.apply([*(0.5 * (low + high))[:2], high[2]]))
     corners = np.array(before.shape.vertices)
-    leant = source.paths[poise.thing][poise.lowest].apply(corners) - old
+    leant = source.paths[leaning.thing][leaning.lowest].apply(corners) - tops[0]
     nearest = int(np.argmin(np.linalg.norm(leant, axis=1)))
-    sizes = [each.thing(poise.other).size[:2] for each in (source.scene, scene)]
     by = turn.apply(leant[nearest])
-    by[:2] *= float(np.mean(sizes[1] / np.maximum(sizes[0], 1e-9)))
+    by[:2] *= float(np.mean(others[1].size[:2] / np.maximum(others[0].size[:2], 1e-9)))
     edge = corners[nearest] * after.size / np.maximum(before.size, 1e-9)
-    return np.asarray(new + by - spun.apply(edge))
-
-
-def _top(thing: Thing) -> Float[np.ndarray, "3"]:
-    low, high = thing.shape.bounds
-    return np.asarray(thing.pose.apply([*(0.5 * (low + high))[:2], high[2]]))
+    return np.asarray(tops[1] + by - spun.apply(edge))
 
 
 def _beside(
     source: Source,
     name: str,
     span: tuple[int, int],
-    poise: Leaning,
+    leaning: Leaning,
     ends: tuple[RigidTransform, RigidTransform],
     over: list[RigidTransform],
     turn: Rotation,
@@ -470,7 +433,7 @@ def _beside(
     """
     sensors = {source.hands[hold.side].sensor for hold in source.holds if hold.thing == name}
     borders = sorted({e.last for e in source.observation.segments if e.ee in sensors})
-    recorded, frames = source.paths[name], poise.frames
+    recorded, frames = source.paths[name], leaning.frames
     path = recorded.translation
     away = [np.linalg.norm(path - path[frame], axis=1) > MOVES_M for frame in span]
     before = [b for b in borders if span[0] < b < frames[0] and away[0][b]][-1:]
@@ -501,19 +464,6 @@ def _turned(path: RigidTransform, first: int, frame: int, turn: Rotation) -> Rot
     return turn * path[frame].rotation * path[first].rotation.inv() * turn.inv()
 
 
-def _on(
-    source: Source, scene: Scene, name: str, supports: tuple[str, str], after: RigidTransform
-) -> Float[np.ndarray, "3"]:
-    old, new = source.scene.thing(supports[0]), scene.thing(supports[1])
-    local = old.pose.inv().apply(after.translation)
-    low_old, low_new = (s.thing(name).shape.bounds[0, 2] for s in (source.scene, scene))
-    share = (local - old.shape.bounds[0]) / np.maximum(old.size, 1e-9)
-    spot = new.pose.apply(new.shape.bounds[0] + share * new.size)
-    above = local[2] + low_old - old.shape.bounds[1, 2]
-    spot[2] = new.place[2] + new.shape.bounds[1, 2] + above - low_new
-    return np.asarray(spot)
-
-
 def support_at(scene: Scene, name: str, pose: RigidTransform) -> str:
     """What an object would stand on at some pose; empty where nothing is beneath it."""
     x, y, z = (float(each) for each in pose.translation)
@@ -540,22 +490,18 @@ def _at_head(
     scale = after.size / np.maximum(before.size, 1e-9)
     middle = spot * head_ratio(old, new) + gap - relative.rotation.apply(on_thing * scale)
     local = RigidTransform.from_components(middle, relative.rotation)
-    local = _touching(scene, new, meeting.thing, local)
-    return head_path(source, old, new)[frame] * local
-
-
-def _touching(scene: Scene, new: BodyFrames, name: str, local: RigidTransform) -> RigidTransform:
-    """The pose in the eyes' frame moved ahead or back until the surfaces touch."""
     around = Surroundings(new.human, scene)
     solver = Solver(new.human, (*scene.place, scene.floor_m), scene.heading)
-    eyes = solver.site("between_eyes")
+    standing = solver.site("between_eyes")
 
     def apart(by_m: float) -> float:
-        pose = eyes * RigidTransform.from_translation([by_m, 0.0, 0.0]) * local
-        around.pose(solver.posture, {name: pose})
-        return min((p.distance_m for p in around.near(["head"]) if p.thing == name), default=1.0)
+        pose = standing * RigidTransform.from_translation([by_m, 0.0, 0.0]) * local
+        around.pose(solver.posture, {meeting.thing: pose})
+        found = (p.distance_m for p in around.near(["head"]) if p.thing == meeting.thing)
+        return min(found, default=1.0)
 
-    return RigidTransform.from_translation([touching_shift(apart), 0.0, 0.0]) * local
+    ahead = RigidTransform.from_translation([touching_shift(apart), 0.0, 0.0])
+    return head_path(source, old, new)[frame] * ahead * local
 
 
 def touching_shift(apart: Callable[[float], float], most_m: float = SEARCH_M) -> float:

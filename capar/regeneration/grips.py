@@ -1,6 +1,7 @@
 """How the new hand lies on the new object: the same points touch, turned as little as may be."""
 
-from collections.abc import Iterator
+import itertools
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,15 +11,14 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.recording import HAND_SEGMENTS
 from capar.body.scenes import Thing
-from capar.body.shapes import segment_surface
-from capar.model.capture import Sensor, Shape
+from capar.model.capture import Shape
 from capar.regeneration.body_frames import BodyFrames
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.goals import TOUCH_M, touching_shift
 from capar.regeneration.holds import led_holds
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import Hold, Source, contact_points
+from capar.regeneration.sources import Hold, Source, contact_points, hand_surface
 
 YAWS = (0.0, 0.2, -0.2, 0.4, -0.4, 0.6, -0.6, 0.8, -0.8, 1.05, -1.05)
 """Turns about the axis of a round object that are tried, outwards positive [rad]."""
@@ -29,12 +29,9 @@ PITCHES = (0.0, 0.15, -0.15, 0.3, -0.3, 0.5, -0.5)
 TILTS = (0.0, -0.1, 0.1, -0.2, 0.2, 0.3)
 """Turns across the palm, fingers to the object positive, that are tried [rad]."""
 
-DRAWN_M = (0.03, 0.06, 0.09, 0.12)
-"""How far a hand is drawn back along its fingers, so that its forearm leaves the object;
-each also tilted [m]."""
-
-DRAWN_TILTS = (0.0, -0.2, 0.2)
-"""Turns across the palm that are tried with it [rad]."""
+DRAWN_M, DRAWN_TILTS = (0.03, 0.06, 0.09, 0.12), (0.0, -0.2, 0.2)
+"""How far a hand is drawn back along its fingers, so that its forearm leaves the object [m], and
+the turns across the palm that are tried with each [rad]."""
 
 PITCH_WEIGHT, TILT_WEIGHT = 2.0, 4.0
 """How much worse these turns are than one about a round object [1]."""
@@ -68,15 +65,6 @@ class Turn:
     drawn_m: float = 0.0
     """How far the hand is drawn back along its fingers [m]."""
 
-    eased: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """How it is turned besides, as the body itself would take it: about and as far as this in the
-    frame on the hand [rad]."""
-
-    @property
-    def size(self) -> float:
-        """How much worse than none it is [rad]."""
-        return abs(self.yaw) + PITCH_WEIGHT * abs(self.pitch) + TILT_WEIGHT * abs(self.tilt)
-
 
 @dataclass(frozen=True, eq=False)
 class Grip:
@@ -108,23 +96,22 @@ class Grip:
         """How much too far the hand is from where it would hold the object [m]."""
         return max(abs(self.gap_m), LOOSE_M + self.beyond_m if self.beyond_m > 0.0 else 0.0)
 
-    @property
-    def touches(self) -> bool:
-        """Whether the hand came to the surface of the object, or was too far from it or inside."""
-        return self.missed_m <= LOOSE_M
 
-
-def turns(thing: Thing) -> Iterator[Turn]:
+def turns(thing: Thing) -> list[Turn]:
     """The turns to try on an object, the smallest first."""
     yaws = YAWS if is_round(thing.shape) else YAWS[:1]
     found = [Turn(yaw, pitch) for yaw in yaws for pitch in PITCHES]
     found += [Turn(0.0, pitch, tilt) for pitch in PITCHES for tilt in TILTS[1:]]
-    yield from sorted(found, key=lambda each: each.size)
+
+    def size(turn: Turn) -> float:
+        return abs(turn.yaw) + PITCH_WEIGHT * abs(turn.pitch) + TILT_WEIGHT * abs(turn.tilt)
+
+    return sorted(found, key=size)
 
 
-def drawn_turns() -> Iterator[Turn]:
+def drawn_turns() -> list[Turn]:
     """What is tried where an arm would be inside what its hand takes: nearer the fingertips."""
-    yield from (Turn(tilt=tilt, drawn_m=drawn_m) for drawn_m in DRAWN_M for tilt in DRAWN_TILTS)
+    return [Turn(tilt=tilt, drawn_m=drawn_m) for drawn_m in DRAWN_M for tilt in DRAWN_TILTS]
 
 
 def is_round(shape: Shape) -> bool:
@@ -139,48 +126,79 @@ class Gripping:
     """Grips of one body on the objects of one scene."""
 
     def __init__(self, source: Source, scene: Scene, old: BodyFrames, new: BodyFrames) -> None:
-        self.source, self.scene, self.old, self.new = source, scene, old, new
+        self.source, self.scene, self.new = source, scene, new
         self.around = Surroundings(new.human, scene)
         self.posture = Solver(new.human, (*scene.place, scene.floor_m), scene.heading).rest
+        self.shapes: dict[str, tuple[Shape, Shape]] = {}
+        """The recorded hand's surface and the new one's by side, each in the frame on it."""
+
+        for side, track in source.hands.items():
+            recorded = source.capture.sensor(track.sensor).shape
+            assert recorded is not None  # checked when the source was made
+            own = hand_surface(new.human, side)
+            self.shapes[side] = (
+                _seen_from(track.frame.pose, recorded), _seen_from(new.hands[side].pose, own)
+            )  # fmt: skip
         holds = led_holds(source.holds, source.co_held)
         self.recorded = {hold: self._recorded(hold) for hold in holds}
+
+    def grips(self, holds: Iterable[Hold], turn: Turn) -> list[Grip]:
+        """Grips of some holds, and of what these hands hold besides."""
+        return self.with_co_held([self.grip(hold, turn) for hold in holds])
 
     def grip(self, hold: Hold, turn: Turn) -> Grip:
         """The recorded grip in the new measures, turned, touching, and clear of the support."""
         relative, on_hand, on_thing = self.recorded[hold]
-        before = self.source.scene.thing(hold.thing)
-        after = self.scene.thing(hold.thing)
-        track = self.source.hands[hold.side]
-        point = on_hand * self.new.hands[hold.side].extents / track.frame.extents
+        old, new = self.source.scene, self.scene
+        before, after = old.thing(hold.thing), new.thing(hold.thing)
+        extents = self.source.hands[hold.side].frame.extents
+        point = on_hand * self.new.hands[hold.side].extents / extents
         spot = on_thing * after.size / np.maximum(before.size, 1e-9)
         gap = relative.apply(on_hand) - on_thing
-        eased = Rotation.from_rotvec(turn.eased)
-        turned = relative.rotation * Rotation.from_euler("ZY", [turn.pitch, turn.tilt]) * eased
+        turned = relative.rotation * Rotation.from_euler("ZY", [turn.pitch, turn.tilt])
         pose = RigidTransform.from_components(spot + gap - turned.apply(point), turned)
-        if is_round(after.shape):
-            pose = RigidTransform.from_rotation(self._about(hold, turn)) * pose
+        if is_round(after.shape):  # it is gripped as seen from where the performer faces
+            facing = (new.heading - after.heading) - (old.heading - before.heading)
+            outwards = -turn.yaw if hold.side == "right" else turn.yaw
+            about = Rotation.from_euler("z", facing + outwards)
+            pose = RigidTransform.from_rotation(about) * pose
         pose = pose * RigidTransform.from_translation([-turn.drawn_m, 0.0, 0.0])
-        raised = self._raise(hold, pose)
+        raised = 0.0
+        if new.support(hold.thing):  # what the hand stays clear of, if it did so before
+            above, now = (
+                float(at.apply(np.array(shape.vertices))[:, 2].min() - thing.shape.bounds[0, 2])
+                for at, shape, thing in zip(
+                    (relative, pose), self.shapes[hold.side], (before, after), strict=True
+                )
+            )
+            raised = max(0.0, min(CLEAR_M, above) - now)
         pose = RigidTransform.from_translation([0.0, 0.0, raised]) * pose
-        out, gap = self._out(hold, pose)
+        held = [(hold, RigidTransform.identity())]
+        beside = (one.hold for one in self.source.co_held if one.lead == hold)
+        held += [(one, self._seat(one.thing, hold.thing).inv()) for one in beside]
+        out = touching_shift(
+            lambda by_m: min(self._gap(one, seat * pose, by_m) for one, seat in held), OUT_M
+        )
+        left_m = self._gap(hold, pose, out) - TOUCH_M
         pose = pose * RigidTransform.from_translation([0.0, 0.0, -out])
-        return Grip(hold, pose, turn, raised, out, gap)
+        return Grip(hold, pose, turn, raised, out, left_m)
 
     def with_co_held(self, grips: list[Grip]) -> list[Grip]:
         """The same, with how these hands lie on what they hold besides."""
-        return [*grips, *(one for grip in grips for one in self._co_held(grip))]
-
-    def _co_held(self, grip: Grip) -> Iterator[Grip]:
-        for companion in self.source.co_held:
-            if companion.lead == grip.hold:
-                hold = companion.hold
-                seat = self._seat(hold.thing, grip.hold.thing)
+        out = list(grips)
+        for grip, pair in itertools.product(grips, self.source.co_held):
+            if pair.lead == grip.hold:
+                seat = self._seat(pair.hold.thing, grip.hold.thing)
                 pose = seat.inv() * grip.pose
-                gap = self._gap(hold, pose, 0.0) - TOUCH_M
-                beyond = self._beyond(grip, seat, hold.thing)
-                yield replace(
-                    grip, hold=hold, pose=pose, gap_m=gap, beside=grip.hold.thing, beyond_m=beyond
+                gap = self._gap(pair.hold, pose, 0.0) - TOUCH_M
+                beyond = self._beyond(grip, seat, pair.hold.thing)
+                beside = grip.hold.thing
+                out.append(
+                    replace(
+                        grip, hold=pair.hold, pose=pose, gap_m=gap, beside=beside, beyond_m=beyond
+                    )
                 )
+        return out
 
     def _seat(self, name: str, lead: str) -> RigidTransform:
         """``T_lead_thing`` as they stand."""
@@ -191,71 +209,21 @@ class Gripping:
 
         Along the line on which they lie beside each other, in the plane of the palm.
         """
-        local, lead = grip.pose.inv(), self.scene.thing(grip.hold.thing)
+        local = grip.pose.inv()
         middle = local.apply(seat.apply(self.scene.thing(name).shape.bounds.mean(axis=0)))
-        first = local.apply(lead.shape.bounds.mean(axis=0))
+        first = local.apply(self.scene.thing(grip.hold.thing).shape.bounds.mean(axis=0))
         along = (middle - first) * [1.0, 1.0, 0.0]
         along /= max(float(np.linalg.norm(along)), 1e-9)
-        own = np.array(self._hand(grip.hold.side).vertices) @ along
+        own = np.array(self.shapes[grip.hold.side][1].vertices) @ along
         return float(max(middle @ along - own.max(), own.min() - first @ along))
 
     def _recorded(
         self, hold: Hold
     ) -> tuple[RigidTransform, Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
         """``T_thing_hand`` and the middle of the contact on the hand's frame and on the object."""
-        track = self.source.hands[hold.side]
-        part = slice(hold.first, hold.last + 1)
-        poses = self.source.paths[hold.thing][part].inv() * track.path[part]
-        spot = np.median(poses.translation, axis=0)
-        relative = RigidTransform.from_components(spot, poses.rotation.mean())
-        sensor = self.source.capture.sensor(track.sensor)
-        hand = _hand_shape(sensor, track.frame.pose)
-        shape = self.source.scene.thing(hold.thing).shape
-        on_hand, on_thing = contact_points(hand, shape, relative.inv())
-        return relative, on_hand, on_thing
-
-    def _about(self, hold: Hold, turn: Turn) -> Rotation:
-        """A round object is gripped as seen from where the performer faces."""
-        old, new = self.source.scene, self.scene
-        facing = (new.heading - new.thing(hold.thing).heading) - (
-            old.heading - old.thing(hold.thing).heading
-        )
-        outwards = -turn.yaw if hold.side == "right" else turn.yaw
-        return Rotation.from_euler("z", facing + outwards)
-
-    def _raise(self, hold: Hold, pose: RigidTransform) -> float:
-        """How much higher the hand has to be to stay clear of what the object stands on [m]."""
-        if not self.scene.support(hold.thing):
-            return 0.0
-        track = self.source.hands[hold.side]
-        sensor = self.source.capture.sensor(track.sensor)
-        shape = _hand_shape(sensor, track.frame.pose)
-        before = self._above(self.source.scene, hold, self.recorded[hold][0], shape)
-        own = self._hand(hold.side)
-        return max(0.0, min(CLEAR_M, before) - self._above(self.scene, hold, pose, own))
-
-    def _hand(self, side: str) -> Shape:
-        """The new hand's surface in the frame on it."""
-        names = tuple(f"{side}_{each}" for each in HAND_SEGMENTS)
-        surface = segment_surface(self.new.human.measures, names, f"{side}_hand")
-        local = self.new.hands[side].pose.inv().apply(np.array(surface.vertices))
-        return Shape(local, np.array(surface.faces))
-
-    def _above(self, scene: Scene, hold: Hold, pose: RigidTransform, hand: Shape) -> float:
-        low = scene.thing(hold.thing).shape.bounds[0, 2]
-        return float(pose.apply(np.array(hand.vertices))[:, 2].min() - low)
-
-    def _out(self, hold: Hold, pose: RigidTransform) -> tuple[float, float]:
-        """How far against its palm a hand is moved until it touches, and what gap is left [m]."""
-        beside = [one.hold for one in self.source.co_held if one.lead == hold]
-        along = [(hold, RigidTransform.identity())]
-        along += [(one, self._seat(one.thing, hold.thing).inv()) for one in beside]
-
-        def apart(by_m: float) -> float:
-            return min(self._gap(one, seat * pose, by_m) for one, seat in along)
-
-        out = touching_shift(apart, OUT_M)
-        return out, self._gap(hold, pose, out) - TOUCH_M
+        relative = recorded_grip(self.source, hold)
+        thing = self.source.scene.thing(hold.thing).shape
+        return relative, *contact_points(self.shapes[hold.side][0], thing, relative.inv())
 
     def _gap(self, hold: Hold, pose: RigidTransform, by_m: float) -> float:
         """How far a hand is from an object when it is moved so far against its palm [m]."""
@@ -266,7 +234,13 @@ class Gripping:
         return min(found, default=1.0)
 
 
-def _hand_shape(sensor: Sensor, frame: RigidTransform) -> Shape:
-    """The recorded hand's surface in the frame on it."""
-    assert sensor.shape is not None  # checked when the source was made
-    return Shape(frame.inv().apply(np.array(sensor.shape.vertices)), np.array(sensor.shape.faces))
+def recorded_grip(source: Source, hold: Hold) -> RigidTransform:
+    """``T_thing_hand`` as it was recorded, in the median of the hold."""
+    part = slice(hold.first, hold.last + 1)
+    poses = source.paths[hold.thing][part].inv() * source.hands[hold.side].path[part]
+    spot = np.median(poses.translation, axis=0)
+    return RigidTransform.from_components(spot, poses.rotation.mean())
+
+
+def _seen_from(frame: RigidTransform, shape: Shape) -> Shape:
+    return Shape(frame.inv().apply(np.array(shape.vertices)), np.array(shape.faces))

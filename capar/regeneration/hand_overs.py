@@ -1,12 +1,11 @@
 """Hand-overs: several bodies perform together what several were recorded to do."""
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
-from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human, body_spec
@@ -14,15 +13,15 @@ from capar.model.capture import Capture, TagType
 from capar.model.facts import Touching
 from capar.model.observation import Observation
 from capar.regeneration.body_frames import body_frames
-from capar.regeneration.goals import Goal, object_goals, support_at
-from capar.regeneration.holds import loads_of
+from capar.regeneration.goals import Goal, object_goals
+from capar.regeneration.holds import in_order, loads_of
 from capar.regeneration.motion import Motion
 from capar.regeneration.paths import ObjectPaths, object_paths
-from capar.regeneration.planning import MOST_TURNS, TALLER_M, Draft, beside, check_stance
-from capar.regeneration.quality import Gate, Quality, performed_hands
+from capar.regeneration.planning import Draft
+from capar.regeneration.quality import Gate, Quality, performed_hands, within, worst_of
 from capar.regeneration.scenes import PlanError, Scene
-from capar.regeneration.search import best_motion
-from capar.regeneration.sources import Hold, Source, check_source, moves, source_of
+from capar.regeneration.search import MOST_TURNS, best_motion, check_stance, choose_grips
+from capar.regeneration.sources import Source, check_source, moves, source_of
 from capar.regeneration.styles import Kind, Style, own_style
 
 
@@ -62,73 +61,51 @@ def joint_source(capture: Capture, observation: Observation) -> JointSource:
         PlanError: As for one performer; or an object passes between hands that never both hold it,
             or two objects do at once.
     """
-    alone = {
-        agent.name: source_of(
-            _of(capture, agent.name), _done_by(capture, observation, agent.name), checked=False
-        )
-        for agent in capture.agents
-    }
-    sources = {}
+    alone = {}
+    for agent in capture.agents:
+        own = _of(capture, agent.name)
+        worn = {sensor.name for sensor in own.sensors}
+        forces = tuple(force for force in observation.forces if force.ee in worn)
+        alone[agent.name] = source_of(own, replace(observation, forces=forces), checked=False)
     touching = [fact for fact in observation.facts if isinstance(fact, Touching)]
+    owned = [(hold, name) for name, source in alone.items() for hold in source.holds]
+    owned.sort(key=lambda pair: pair[0].first)
+    sources = {}
     for name, source in alone.items():
-        holds = tuple(hold for other in alone.values() for hold in other.holds)
-        others = [hold for other, s in alone.items() if other != name for hold in s.holds]
-        sources[name] = replace(
-            source,
-            others=tuple(sorted(others, key=lambda hold: hold.first)),
-            loads=loads_of(source.paths, holds, touching),
-        )
+        others = tuple(hold for hold, who in owned if who != name)
+        loads = loads_of(source.paths, tuple(hold for hold, _ in owned), touching)
+        sources[name] = replace(source, others=others, loads=loads)
         check_source(sources[name])
-    return JointSource(capture, observation, sources, _hand_overs(sources))
+    passed = []
+    for number, (hold, giver) in enumerate(owned):
+        for later, taker in owned[number + 1 :]:
+            if giver == taker or hold.thing != later.thing or later.first > hold.last:
+                continue
+            if later.last <= hold.last:
+                raise PlanError(
+                    f"{taker!r} holds {hold.thing!r} only while {giver!r} does; what two hold "
+                    "together and neither takes over is not regenerated"
+                )
+            passed.append(HandOver(hold.thing, giver, taker, later.first, hold.last))
+    return JointSource(
+        capture, observation, sources, tuple(sorted(passed, key=lambda found: found.first))
+    )
 
 
 def _of(capture: Capture, name: str) -> Capture:
     """What was recorded of one performer, and all objects."""
     agent = next(agent for agent in capture.agents if agent.name == name)
-    sensors = [sensor for sensor in capture.sensors if capture.agent_of(sensor) == name]
+    sensors = tuple(sensor for sensor in capture.sensors if capture.agent_of(sensor) == name)
     if not sensors:
         raise PlanError(f"{name!r} wears no sensor; leave the agent out, or name whose sensors are")
-    objects = [
+    objects = tuple(
         thing
         for thing in capture.objects
         if thing.tag is not TagType.SELF or capture.agent_of(thing) == name
-    ]
-    return replace(
-        capture, agent=agent, others=(), sensors=tuple(sensors), objects=tuple(objects),
-        pivot_contacts=(),
-    )  # fmt: skip
-
-
-def _done_by(capture: Capture, observation: Observation, name: str) -> Observation:
-    """The observation with the forces of one performer alone."""
-    own = {sensor.name for sensor in capture.sensors if capture.agent_of(sensor) == name}
-    return replace(
-        observation, forces=tuple(force for force in observation.forces if force.ee in own)
     )
-
-
-def _hand_overs(sources: Mapping[str, Source]) -> tuple[HandOver, ...]:
-    out = []
-    owned = [(hold, name) for name, source in sources.items() for hold in source.holds]
-    owned.sort(key=lambda pair: pair[0].first)
-    for number, (hold, giver) in enumerate(owned):
-        for later, taker in owned[number + 1 :]:
-            if giver == taker or hold.thing != later.thing:
-                continue
-            if later.first <= hold.last < later.last:
-                out.append(HandOver(hold.thing, giver, taker, later.first, hold.last))
-            elif later.last <= hold.last:
-                raise PlanError(
-                    f"{taker!r} holds {hold.thing!r} only while {giver!r} does; what two hold "
-                    "together and neither takes over is not regenerated"
-                )
-    return tuple(sorted(out, key=lambda found: found.first))
-
-
-def all_holds(source: JointSource) -> tuple[Hold, ...]:
-    """Of all performers, in order of time."""
-    holds = [hold for one in source.sources.values() for hold in one.holds]
-    return tuple(sorted(holds, key=lambda hold: (hold.first, hold.side)))
+    return replace(
+        capture, agent=agent, others=(), sensors=sensors, objects=objects, pivot_contacts=()
+    )
 
 
 Place = tuple[float, float]
@@ -157,33 +134,42 @@ def joint_paths(source: JointSource, cast: Cast, style: Style, place: Place) -> 
             one who was given it.
     """
     first = next(iter(source.sources))
-    one = replace(source.sources[first], holds=all_holds(source))
-    _check_meetings(source, first)
-    scene, human = cast.scenes[first], cast.humans[first]
-    goals = object_goals(one, scene, body_frames(one.human, one.scene), body_frames(human, scene))
-    told = []
-    for passed in source.hand_overs:
-        before, after = one.paths[passed.thing][passed.first], offer(source, cast, passed, place)
-        goals[passed.thing] = _through(one, scene, goals[passed.thing], passed, before, after)
-        x, y, z = after.translation
-        told.append(
-            f"{passed.giver} hands {passed.thing!r} to {passed.taker} at "
-            f"{one.times[passed.first]:.2f} s at ({x:.2f}, {y:.2f}, {z:.2f}) m, between them as "
-            f"their statures are, {place[0]:+.1f} m to the taker, {place[1]:+.1f} m upwards"
-        )
-    ways = object_paths(one, scene, goals, human, style)
-    return replace(ways, told=(*told, *ways.told))
-
-
-def _check_meetings(source: JointSource, first: str) -> None:
-    for name, one in source.sources.items():
-        if name != first and one.meetings:
-            meeting = one.meetings[0]
+    for name, other in source.sources.items():
+        if name != first and other.meetings:
+            meeting = other.meetings[0]
             raise PlanError(
                 f"{meeting.thing!r} comes to the {meeting.part} of {name!r}, and among several "
                 f"performers only the first one, {first!r}, may bring a thing to the head; end "
                 "the recording before, or name that agent first"
             )
+    holds = in_order(hold for other in source.sources.values() for hold in other.holds)
+    one = replace(source.sources[first], holds=holds)
+    scene, human = cast.scenes[first], cast.humans[first]
+    goals = object_goals(one, scene, body_frames(one.human, one.scene), body_frames(human, scene))
+    notes = []
+    for passed in source.hand_overs:
+        name, at, own = passed.thing, offer(source, cast, passed, place), goals[passed.thing]
+        kept = [
+            goal
+            for goal in own
+            if goal.frame > passed.last
+            or (
+                goal.frame < passed.first
+                and (goal is own[0] or moves(one.paths[name][goal.frame : passed.first + 1]))
+            )
+        ]
+        reason = "handed over between both, in proportion to their statures"
+        frames = dict.fromkeys((passed.first, passed.last))
+        kept += [Goal(name, frame, at, reason) for frame in frames]
+        goals[name] = sorted(kept, key=lambda goal: goal.frame)
+        x, y, z = at.translation
+        notes.append(
+            f"{passed.giver} hands {name!r} to {passed.taker} at "
+            f"{one.times[passed.first]:.2f} s at ({x:.2f}, {y:.2f}, {z:.2f}) m, between them as "
+            f"their statures are, {place[0]:+.1f} m to the taker, {place[1]:+.1f} m upwards"
+        )
+    paths = object_paths(one, scene, goals, human, style)
+    return replace(paths, notes=(*notes, *paths.notes))
 
 
 def offer(source: JointSource, cast: Cast, passed: HandOver, place: Place) -> RigidTransform:
@@ -203,144 +189,82 @@ def offer(source: JointSource, cast: Cast, passed: HandOver, place: Place) -> Ri
         (np.asarray(giver.place), np.subtract(taker.place, giver.place))
         for giver, taker in ([old.scene for old in olds], news)
     )
+    left, new_left = (np.array([-y, x]) for x, y in (way, new_way))
     length, new_length = np.linalg.norm(way), np.linalg.norm(new_way)
     local = before.translation[:2] - start
-    share = float(local @ way) / length**2
-    aside = float(local @ _left(way)) / length
+    share, aside = float(local @ way) / length**2, float(local @ left) / length
     shares = np.array([share * ratios[0], (1.0 - share) * ratios[1]])
     divided = float(shares[0] / shares.sum()) + place[0] / new_length
-    flat = new_start + divided * new_way + aside * np.mean(ratios) * _left(new_way) / new_length
-    old_scene, new_scene = olds[0].scene, news[0]
-    gone = before.translation[2] - old_scene.thing(passed.thing).place[2]
-    high = new_scene.thing(passed.thing).place[2] + gone
-    turn = _heading(new_way) - _heading(way)
+    flat = new_start + divided * new_way + aside * np.mean(ratios) * new_left / new_length
+    heights = [scene.thing(passed.thing).place[2] for scene in (news[0], olds[0].scene)]
+    high = heights[0] + before.translation[2] - heights[1] + place[1]
+    turn = np.arctan2(new_way[1], new_way[0]) - np.arctan2(way[1], way[0])
     own = Rotation.from_euler("z", turn) * before.rotation
-    return RigidTransform.from_components([*flat, high + place[1]], own)
-
-
-def _left(way: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
-    return np.array([-way[1], way[0]])
-
-
-def _heading(way: Float[np.ndarray, "2"]) -> float:
-    return float(np.arctan2(way[1], way[0]))
-
-
-def _through(
-    one: Source,
-    scene: Scene,
-    goals: list[Goal],
-    passed: HandOver,
-    before: RigidTransform,
-    after: RigidTransform,
-) -> list[Goal]:
-    """The goals of an object with those of its being handed over between them.
-
-    What nothing bears afterwards goes as far in metres from there as it did.
-    """
-    reason = "handed over between both, in proportion to their statures"
-    frames = dict.fromkeys((passed.first, passed.last))
-    through = [Goal(passed.thing, frame, after, reason) for frame in frames]
-    path, kept = one.paths[passed.thing], []
-    turn = after.rotation * before.rotation.inv()
-    for goal in goals:
-        if goal.frame < passed.first:
-            arrived = not moves(path[goal.frame : passed.first + 1])
-            if not (arrived and goal is not goals[0]):
-                kept.append(goal)
-        elif goal.frame > passed.last:
-            gone = path[goal.frame].translation - before.translation
-            if not support_at(one.scene, passed.thing, path[goal.frame]):
-                pose = RigidTransform.from_components(
-                    after.translation + turn.apply(gone), turn * path[goal.frame].rotation
-                )
-                reason = "as far from where it was handed over as it was [m]"
-                kept.append(replace(goal, pose=pose, reason=reason))
-            else:
-                kept.append(goal)
-    return sorted([*kept, *through], key=lambda goal: goal.frame)
+    return RigidTransform.from_components([*flat, high], own)
 
 
 FAR_M = 0.1
 """Larger distances between two bodies are not measured [m]."""
 
 
-class TwoBodies:
-    """Two bodies, to be posed and measured."""
-
-    def __init__(self, first: Human, second: Human) -> None:
-        spec = body_spec(first.measures)
-        spec.worldbody.add_frame().attach_body(
-            body_spec(second.measures).worldbody.first_body(), "other_", ""
-        )
-        self.model = spec.compile()
-        self.data = mujoco.MjData(self.model)
-        names = [
-            self.model.body(int(self.model.geom_bodyid[geom])).name
-            for geom in range(self.model.ngeom)
-        ]
-        own = [geom for geom, name in enumerate(names) if not name.startswith("other_")]
-        others = [geom for geom, name in enumerate(names) if name.startswith("other_")]
-        self.pairs = np.array(list(itertools.product(own, others)))
-        self.names = [name.removeprefix("other_") for name in names]
-        self.reach = self.model.geom_rbound[self.pairs].sum(axis=1)
-
-    def nearest(
-        self, first: Float[np.ndarray, "posture"], second: Float[np.ndarray, "posture"]
-    ) -> tuple[float, str, str]:
-        """How far two bodies are apart in some postures, negative inside [m], and which parts."""
-        self.data.qpos[:] = np.concatenate([first, second])
-        mujoco.mj_kinematics(self.model, self.data)
-        middles = self.data.geom_xpos[self.pairs]
-        apart = np.linalg.norm(middles[:, 0] - middles[:, 1], axis=1) - self.reach
-        worst = (FAR_M, "", "")
-        for row in np.flatnonzero(apart < FAR_M):
-            one, two = (int(geom) for geom in self.pairs[row])
-            found = mujoco.mj_geomDistance(self.model, self.data, one, two, FAR_M, None)
-            worst = min(worst, (float(found), self.names[one], self.names[two]))
-        return worst
-
-
 def joint_gates(source: JointSource, motions: Mapping[str, Motion]) -> tuple[Gate, ...]:
     """Gates between all bodies, at every frame."""
-    return (*_between(motions), *_coupled(source, motions))
+    pairs = itertools.combinations(motions.items(), 2)
+    apart = (
+        _apart_gate(f"{one}'s", first, f"{two}'s", second) for (one, first), (two, second) in pairs
+    )
+    return (*apart, *(_hand_over_gate(motions, passed) for passed in source.hand_overs))
 
 
-def _between(motions: Mapping[str, Motion]) -> Iterator[Gate]:
-    for (one, first), (two, second) in itertools.combinations(motions.items(), 2):
-        both = TwoBodies(first.plan.human, second.plan.human)
-        rows = zip(first.postures, second.postures, strict=True)
-        found = [(*both.nearest(*postures), frame) for frame, postures in enumerate(rows)]
-        gap_m, part, other, frame = min(found)
-        bodies = f"{one}'s {part}, {two}'s {other}" if part else ""
-        yield Gate("bodies apart", 1e3 * gap_m, -1.0, "mm", True, frame, bodies)
+def _apart_gate(whose: str, first: Motion, other: str, second: Motion) -> Gate:
+    """How far two bodies are apart, negative inside."""
+    spec = body_spec(first.plan.human.measures)
+    spec.worldbody.add_frame().attach_body(
+        body_spec(second.plan.human.measures).worldbody.first_body(), "other_", ""
+    )
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    names = [model.body(int(body)).name for body in model.geom_bodyid]
+    ours, theirs = (
+        [geom for geom, name in enumerate(names) if name.startswith("other_") == is_other]
+        for is_other in (False, True)
+    )
+    pairs = np.array(list(itertools.product(ours, theirs)))
+    reach = model.geom_rbound[pairs].sum(axis=1)
+    worst = (FAR_M, "", "", 0)
+    for frame, postures in enumerate(zip(first.postures, second.postures, strict=True)):
+        data.qpos[:] = np.concatenate(postures)
+        mujoco.mj_kinematics(model, data)
+        middles = data.geom_xpos[pairs]
+        near = np.linalg.norm(middles[:, 0] - middles[:, 1], axis=1) - reach < FAR_M
+        for one, two in pairs[near].tolist():
+            gap_m = float(mujoco.mj_geomDistance(model, data, one, two, FAR_M, None))
+            worst = min(worst, (gap_m, names[one], names[two].removeprefix("other_"), frame))
+    gap_m, part, their, frame = worst
+    bodies = f"{whose} {part}, {other} {their}" if part else ""
+    return Gate("bodies apart", 1e3 * gap_m, -1.0, "mm", True, frame, bodies)
 
 
-def _coupled(source: JointSource, motions: Mapping[str, Motion]) -> Iterator[Gate]:
+def _hand_over_gate(motions: Mapping[str, Motion], passed: HandOver) -> Gate:
     """Both hands are where they hold the object as long as both were recorded to hold it."""
-    for passed in source.hand_overs:
-        worst = max(_missed(motions[name], passed, name) for name in (passed.giver, passed.taker))
-        missed_m, frame, bodies = worst
-        yield Gate("hand-over", 1e3 * missed_m, 1.0, "mm", False, frame, bodies)
-
-
-def _missed(motion: Motion, passed: HandOver, name: str) -> tuple[float, int, str]:
-    """How far a performer's hands are from their grips while an object is handed over [m]."""
-    plan, part = motion.plan, slice(passed.first, passed.last + 1)
-    hands, worst = performed_hands(motion), (0.0, passed.first, name)
-    for grip in plan.grips:
-        hold = grip.hold
-        if hold.thing == passed.thing and hold.first <= passed.first <= passed.last <= hold.last:
-            wanted: RigidTransform = plan.things[hold.thing][part] * grip.pose
-            off = np.linalg.norm(hands[hold.side][part].translation - wanted.translation, axis=1)
-            row = int(off.argmax())
-            found = (float(off[row]), passed.first + row, f"{name}'s {hold.side} hand")
-            worst = max(worst, found)
-    return worst
+    part, worst = slice(passed.first, passed.last + 1), (0.0, passed.first, passed.giver)
+    for name in (passed.giver, passed.taker):
+        plan, hands = motions[name].plan, performed_hands(motions[name])
+        for grip in plan.grips:
+            hold = grip.hold
+            if (
+                hold.thing == passed.thing
+                and hold.first <= passed.first <= passed.last <= hold.last
+            ):
+                wanted: RigidTransform = plan.things[hold.thing][part] * grip.pose
+                off = hands[hold.side][part].translation - wanted.translation
+                whose = f"{name}'s {hold.side} hand"
+                worst = max(worst, worst_of(np.linalg.norm(off, axis=1), whose, passed.first))
+    return within("hand-over", worst, 1.0)
 
 
 NEARER_M = (0.1, 0.3, 0.5, 0.8, 1.2)
-"""How much nearer somebody is placed where something is out of reach [m]."""
+"""How much nearer everybody is placed where something is out of reach [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -385,8 +309,7 @@ def regenerate_together(
         PlanError: It is out of reach or impossible; the message says what would help.
     """
     cast = Cast(humans, scenes or {name: one.scene for name, one in source.sources.items()})
-    drafts = _reachable(source, cast, kind)
-    made = {name: best_motion(draft) for name, draft in drafts.items()}
+    made = {name: best_motion(draft) for name, draft in _reachable(source, cast, kind).items()}
     motions = {name: motion for name, (motion, _) in made.items()}
     qualities = {name: quality for name, (_, quality) in made.items()}
     return JointMotion(source, motions, qualities, joint_gates(source, motions))
@@ -397,16 +320,26 @@ def _reachable(source: JointSource, cast: Cast, kind: Kind) -> dict[str, Draft]:
 
     The first place that all reach with the recorded grips, else the usual one with turned grips.
     """
-    for name, human in cast.humans.items():
-        check_stance(cast.scenes[name], human)
-    usual, *others = PLACES if source.hand_overs else PLACES[:1]
     why = ""
-    for place, most in [*((place, 1) for place in (usual, *others)), (usual, MOST_TURNS)]:
+    places = [(place, 1) for place in (PLACES if source.hand_overs else PLACES[:1])]
+    for place, most in [*places, (PLACES[0], MOST_TURNS)]:
         try:
             return _drafts(source, cast, kind, place, most)
         except PlanError as error:
             why = why or str(error)
-    raise PlanError(f"{why}; {_remedy(source, cast, kind)}")
+    middle = np.mean([scene.place for scene in cast.scenes.values()], axis=0)
+    for by_m in NEARER_M:
+        scenes = {}
+        for name, scene in cast.scenes.items():
+            way = middle - scene.place
+            x, y = scene.place + by_m * way / max(float(np.linalg.norm(way)), 1e-9)
+            scenes[name] = replace(scene, place=(float(x), float(y)))
+        try:
+            _drafts(source, Cast(cast.humans, scenes), kind, PLACES[0], 1)
+        except PlanError:
+            continue
+        raise PlanError(f"{why}; everybody standing {by_m:.2f} m nearer would do")
+    raise PlanError(f"{why}; no nearer place that was tried would do")
 
 
 def _drafts(
@@ -414,53 +347,13 @@ def _drafts(
 ) -> dict[str, Draft]:
     """Everybody's grips, with so many turns tried."""
     first = next(iter(source.sources))
-    ways = joint_paths(source, cast, own_style(source.sources[first], kind), place)
+    for name, human in cast.humans.items():
+        check_stance(cast.scenes[name], human)
+    paths = joint_paths(source, cast, own_style(source.sources[first], kind), place)
     out = {}
     for name, one in source.sources.items():
-        scene = cast.scenes[name]
-        draft = Draft(one, scene, cast.humans[name], own_style(one, kind), ways)
-        if beyond := draft.beyond():
-            raise PlanError(f"{name}: {beyond}")
-        grips, missed = draft.reachable_grips(most)
-        if missed is not None:
+        style = own_style(one, kind)
+        out[name] = Draft(one, cast.scenes[name], cast.humans[name], style, paths)
+        if missed := out[name].beyond() or choose_grips(out[name], most):
             raise PlanError(f"{name}: {missed}")
-        draft.grips = tuple(grips)
-        draft.told += [f"whatever the grip, {told}" for told in draft.pressed]
-        out[name] = draft
     return out
-
-
-def _remedy(source: JointSource, cast: Cast, kind: Kind) -> str:
-    """What would make it possible."""
-    for words, changed in _remedies(source, cast):
-        try:
-            for name, human in changed.humans.items():
-                check_stance(changed.scenes[name], human)
-            _drafts(source, changed, kind, PLACES[0], 1)
-        except PlanError:
-            continue
-        return f"{words} would do"
-    return "no nearer place or recorded body that was tried would do"
-
-
-def _remedies(source: JointSource, cast: Cast) -> Iterator[tuple[str, Cast]]:
-    """What may help, in words, and the cast with it."""
-    middle = np.mean([scene.place for scene in cast.scenes.values()], axis=0)
-    for by_m in NEARER_M:
-        for name in cast.scenes:
-            scenes = {**cast.scenes, name: beside(cast.scenes[name], by_m, 0.0)}
-            yield f"{name} standing {by_m:.2f} m further ahead", Cast(cast.humans, scenes)
-        scenes = {name: _towards(scene, middle, by_m) for name, scene in cast.scenes.items()}
-        yield f"everybody standing {by_m:.2f} m nearer", Cast(cast.humans, scenes)
-    for name, human in cast.humans.items():
-        recorded = source.sources[name].human
-        recorded_m, own_m = recorded.measures["stature"], human.measures["stature"]
-        if recorded_m > own_m + TALLER_M:
-            words = f"{name} being as tall as recorded, {recorded_m:.2f} m,"
-            yield words, Cast({**cast.humans, name: recorded}, cast.scenes)
-
-
-def _towards(scene: Scene, middle: np.ndarray, by_m: float) -> Scene:
-    way = middle - np.asarray(scene.place)
-    x, y = np.asarray(scene.place) + by_m * way / max(float(np.linalg.norm(way)), 1e-9)
-    return replace(scene, place=(float(x), float(y)))

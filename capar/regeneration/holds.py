@@ -1,6 +1,6 @@
 """When hands and objects are together: holds, meetings with the head, throws and loads."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,11 +17,8 @@ from capar.model.observation import ForceStyle, Observation
 from capar.regeneration.scenes import PlanError
 from extractors.forces.free_motion import GRAVITY_MPS2
 
-SETTLED_M = 0.0025
-"""While two bodies' relative pose is so near its median, they are rigidly together [m]."""
-
-SETTLED_RAD = float(np.radians(2.0))
-"""Likewise the angle [rad]."""
+SETTLED_M, SETTLED_RAD = 0.0025, float(np.radians(2.0))
+"""While a relative pose is so near its median, two bodies are rigidly together [m, rad]."""
 
 LOOSER = (1.0, 2.0)
 """Multiples of both that are tried: noisy sensors keep less still [1]."""
@@ -29,11 +26,8 @@ LOOSER = (1.0, 2.0)
 SETTLED_SHARE = 0.8
 """Noise may take so small a share of the frames in between out of that [1]."""
 
-GRASP_M = 0.025
-"""How far a living hand may wander on what it carries: skin, fingers and wrist give path [m]."""
-
-GRASP_RAD = float(np.radians(20.0))
-"""Likewise the angle [rad]."""
+GRASP_M, GRASP_RAD = 0.025, float(np.radians(20.0))
+"""How far a living hand may wander on what it carries: skin, fingers and wrist yield [m, rad]."""
 
 SLID = 2.0
 """Multiple of both by which a hand may slide before the object leaves and after it arrived [1]."""
@@ -49,7 +43,7 @@ INSTANTS = 5
 """At so many instants an object that moves at the head meets it [1]."""
 
 CARRIED_M = 0.02
-"""An object that is so far from where a contact begins and from where it ends is under path [m]."""
+"""An object that is so far from both ends of a contact is being carried [m]."""
 
 
 @dataclass(frozen=True)
@@ -76,55 +70,29 @@ Hands = Mapping[str, tuple[str, RigidTransform]]
 """By side: the sensor's name, and ``T_world_hand`` at every frame."""
 
 
+def in_order(holds: Iterable[Hold]) -> tuple[Hold, ...]:
+    """Holds in order of time."""
+    return tuple(sorted(holds, key=lambda hold: (hold.first, hold.side)))
+
+
 def holds_of(
     hands: Hands, paths: Mapping[str, RigidTransform], touching: list[Touching]
 ) -> tuple[Hold, ...]:
     """The part of each contact in which hand and object are together, in order of time.
 
     Rigidly where that is so; else, where the hand carries the object, within what a living hand's
-    grasp gives path.
+    grasp yields.
     """
     out = []
     for side, (sensor, hand) in hands.items():
         for contact in touching:
             if contact.body == sensor and contact.other in paths:
                 part = slice(contact.first, contact.last + 1)
-                thing = paths[contact.other][part]
-                span = _together(thing, hand[part])
+                span = _together(paths[contact.other][part], hand[part])
                 if span:
                     first, last = (contact.first + edge for edge in span)
                     out.append(Hold(side, contact.other, first, last))
-    return tuple(sorted(out, key=lambda hold: (hold.first, hold.side)))
-
-
-def with_unseen_ends(
-    holds: tuple[Hold, ...],
-    hands: Hands,
-    touching: list[Touching],
-    times: Float[np.ndarray, "frames"],
-) -> tuple[Hold, ...]:
-    """Holds from the first frame, or to the last one, where the hand touches the object there.
-
-    Nobody saw it come or leave: performed again, it would have to come from ease. Only if it slides
-    no longer than ``UNSEEN_S`` meanwhile.
-
-    Args:
-        holds: As they were found.
-        hands: The hands.
-        touching: The contacts that were observed.
-        times: Of the frames [s].
-    """
-    out = []
-    for hold in holds:
-        first, last = hold.first, hold.last
-        for contact in touching:
-            if (contact.body, contact.other) == (hands[hold.side][0], hold.thing):
-                if contact.first == 0 and times[hold.first] - times[0] <= UNSEEN_S:
-                    first = 0
-                if contact.last == len(times) - 1 and times[-1] - times[hold.last] <= UNSEEN_S:
-                    last = contact.last
-        out.append(replace(hold, first=first, last=last))
-    return tuple(sorted(out, key=lambda hold: (hold.first, hold.side)))
+    return in_order(out)
 
 
 def with_touches(
@@ -134,33 +102,36 @@ def with_touches(
     displaced: list[Displaced],
     times: Float[np.ndarray, "frames"],
 ) -> tuple[Hold, ...]:
-    """Holds that begin before the object moves, and end after it, where the hand touched it then.
+    """Holds with as much of the touches before and after them as has to be seen again.
 
-    A living hand slides on an object at rest until it has its grip: only the grip is held, which
-    may begin so late that no touch would be seen before the object moves.
-
-    Args:
-        holds: As they were found.
-        hands: The hands.
-        touching: The contacts that were observed.
-        displaced: When objects moved.
-        times: Of the frames [s].
+    A living hand slides on an object at rest until it has its grip, and only the grip is a hold.
+    A touch at the first or the last frame, which nobody saw come or leave, is held from or to
+    there, unless the hand slides for longer than ``UNSEEN_S``. Where the object moves later than
+    the hand touches it, or stops earlier, it is held for ``TOUCHES_S`` at rest.
     """
     out = []
     for hold in holds:
+        own = [c for c in touching if (c.body, c.other) == (hands[hold.side][0], hold.thing)]
         first, last = hold.first, hold.last
-        for contact in touching:
+        for contact in own:
+            if contact.first == 0 and times[hold.first] - times[0] <= UNSEEN_S:
+                first = 0
+            if contact.last == len(times) - 1 and times[-1] - times[hold.last] <= UNSEEN_S:
+                last = contact.last
+        seen = replace(hold, first=first, last=last)
+        for contact in own:
             moved = [m for m in displaced if m.object == hold.thing and _within(m, contact)]
-            if (contact.body, contact.other) == (hands[hold.side][0], hold.thing) and moved:
-                start, end = min(m.first for m in moved), max(m.last for m in moved)
-                if times[start] - times[contact.first] >= STEP_S and _within(hold, contact):
-                    early = int(np.searchsorted(times, times[start] - TOUCHES_S + 1e-6)) - 1
-                    first = min(first, max(contact.first, early))
-                if times[contact.last] - times[end] >= STEP_S and _within(hold, contact):
-                    late = int(np.searchsorted(times, times[end] + TOUCHES_S - 1e-6))
-                    last = max(last, min(contact.last, late))
+            if not moved or not _within(seen, contact):
+                continue
+            start, end = min(m.first for m in moved), max(m.last for m in moved)
+            if times[start] - times[contact.first] >= STEP_S:
+                early = int(np.searchsorted(times, times[start] - TOUCHES_S + 1e-6)) - 1
+                first = min(first, max(contact.first, early))
+            if times[contact.last] - times[end] >= STEP_S:
+                late = int(np.searchsorted(times, times[end] + TOUCHES_S - 1e-6))
+                last = max(last, min(contact.last, late))
         out.append(replace(hold, first=first, last=last))
-    return tuple(sorted(out, key=lambda hold: (hold.first, hold.side)))
+    return in_order(out)
 
 
 def _within(span: Hold | Displaced, contact: Touching) -> bool:
@@ -197,7 +168,7 @@ def meetings_of(
 
 def settled(relative: RigidTransform) -> tuple[int, int] | None:
     """First and last of the frames in which a relative pose is near its median, if most are."""
-    off, turned = _apart(relative)
+    off, turned = _apart(relative, relative)
     for factor in LOOSER:
         steady = (off < factor * SETTLED_M) & (turned < factor * SETTLED_RAD)
         frames = np.flatnonzero(steady)
@@ -207,45 +178,36 @@ def settled(relative: RigidTransform) -> tuple[int, int] | None:
 
 
 def _together(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | None:
-    """When a hand and an object that touch are together: rigidly, or while it is carried."""
-    rigid = settled(thing.inv() * hand)
-    under_way = np.flatnonzero(_under_way(thing))
-    if rigid and (not len(under_way) or (rigid[0] <= under_way[0] and under_way[-1] <= rigid[1])):
-        return rigid
-    return _carried(thing, hand) or rigid
+    """When a hand and an object that touch are together: rigidly, or while it is carried.
 
-
-def _carried(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | None:
-    """When a hand grasps an object that it carries; None if it carries it at no time.
-
-    The grasp is compared with its median while the object is under path, and has to stay near that
-    all the way. Before and after, while the object is about to leave and has arrived, it lasts as
-    long as the hand has not slid much further.
+    A grasp that is not rigid is compared with its median while the object is carried, and has to
+    stay near that all the way. Before and after, it lasts until the hand has slid much further.
     """
-    under_way = np.flatnonzero(_under_way(thing))
-    if len(under_way) < 2:
-        return None
-    first, last = int(under_way[0]), int(under_way[-1])
+    rigid = settled(thing.inv() * hand)
+    carried = np.flatnonzero(_away(thing.translation))
+    if rigid and (not len(carried) or (rigid[0] <= carried[0] and carried[-1] <= rigid[1])):
+        return rigid
+    if len(carried) < 2:
+        return rigid
+    first, last = int(carried[0]), int(carried[-1])
     relative = thing.inv() * hand
     off, turned = _apart(relative, relative[first : last + 1])
-    grasped = (off < GRASP_M) & (turned < GRASP_RAD)
-    if not grasped[first : last + 1].all():
-        return None
+    if not ((off < GRASP_M) & (turned < GRASP_RAD))[first : last + 1].all():
+        return rigid
     near = (off < SLID * GRASP_M) & (turned < SLID * GRASP_RAD)
     return next((int(b), int(e)) for b, e in runs(near) if b <= first and last <= e)
 
 
-def _under_way(thing: RigidTransform) -> Bool[np.ndarray, "frames"]:
-    spots = thing.translation
+def _away(spots: Float[np.ndarray, "frames 3"]) -> Bool[np.ndarray, "frames"]:
+    """Where an object is far from where it is first and from where it is last."""
     gone, left = (np.linalg.norm(spots - end, axis=1) for end in (spots[0], spots[-1]))
     return np.asarray((gone > CARRIED_M) & (left > CARRIED_M))
 
 
 def _apart(
-    relative: RigidTransform, usual: RigidTransform | None = None
+    relative: RigidTransform, usual: RigidTransform
 ) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
-    """How far a relative pose is from the median of some frames [m, rad]; of all, unless stated."""
-    usual = relative if usual is None else usual
+    """How far a relative pose is from the median of some frames [m, rad]."""
     middle = np.median(usual.translation, axis=0)
     near = np.linalg.norm(usual.translation - middle, axis=1)
     turn = usual.rotation[near <= np.median(near)].mean()
@@ -297,7 +259,7 @@ def releases_of(
     times: Float[np.ndarray, "frames"],
     paths: Mapping[str, RigidTransform],
 ) -> tuple[tuple[Release, ...], tuple[Throw, ...]]:
-    """The releases of a recording after which an object is left alone, and the flights to a hand.
+    """The releases after which an object is left alone, and the flights to a hand, in order.
 
     Args:
         forces: As they were observed.
@@ -305,9 +267,6 @@ def releases_of(
         holds: As they were recorded.
         times: The clock [s].
         paths: ``T_world_thing`` by name at every frame.
-
-    Returns:
-        Both in order of time.
 
     Raises:
         PlanError: Something else than a hand sets an object going; or the object is taken again
@@ -329,46 +288,45 @@ def releases_of(
                 continue
             frame = min(ends, key=lambda last: abs(float(times[last]) - force.start_s))
         later = [h for h in holds if h.thing == force.object and h.first > frame]
-        if later:
-            toss = Throw(side, force.object, frame, later[0].first, later[0].side)
-            if force.struck or not _flies(toss, times, paths[force.object]):
-                raise PlanError(
-                    f"{force.object!r} is taken again at {times[later[0].first]:.2f} s after it "
-                    "moved on alone otherwise than in free flight from a hand that let it go, "
-                    "where another body's may not come; end the recording before, with to_s in a "
-                    "file given with --assume"
-                )
-            throws.append(toss)
+        if not later:
+            out.append(Release(side, force.object, frame, force))
             continue
-        out.append(Release(side, force.object, frame, force))
+        throw = Throw(side, force.object, frame, later[0].first, later[0].side)
+        if force.struck or not _flies(throw, times, paths[force.object].translation):
+            raise PlanError(
+                f"{force.object!r} is taken again at {times[later[0].first]:.2f} s after it moved "
+                "on alone otherwise than in free flight from a hand that let it go, where another "
+                "body's may not come; end the recording before, with to_s in a file given with "
+                "--assume"
+            )
+        throws.append(throw)
     return tuple(out), tuple(throws)
 
 
-def _flies(toss: Throw, times: Float[np.ndarray, "frames"], path: RigidTransform) -> bool:
-    """Whether an object is near the parabola of gravity from its release to its catch.
-
-    Any such object is for a moment: with two frames between, it is not known.
-    """
-    spots = path.translation[toss.first : toss.last + 1]
-    past = times[toss.first : toss.last + 1] - times[toss.first]
-    straight = spots[0] + np.outer(past / past[-1], spots[-1] - spots[0])
-    straight[:, 2] += 0.5 * GRAVITY_MPS2 * past * (past[-1] - past)
-    return len(past) > 2 and bool(np.linalg.norm(spots - straight, axis=1).max() < FLIES_M)
+def _flies(
+    throw: Throw, times: Float[np.ndarray, "frames"], spots: Float[np.ndarray, "frames 3"]
+) -> bool:
+    """Whether an object is near the parabola of gravity; not known of two frames."""
+    part = slice(throw.first, throw.last + 1)
+    spots, past = spots[part], times[part] - times[throw.first]
+    parabola = spots[0] + np.outer(past / past[-1], spots[-1] - spots[0])
+    parabola[:, 2] += 0.5 * GRAVITY_MPS2 * past * (past[-1] - past)
+    return len(past) > 2 and bool(np.linalg.norm(spots - parabola, axis=1).max() < FLIES_M)
 
 
 def with_blows(holds: tuple[Hold, ...], releases: tuple[Release, ...]) -> tuple[Hold, ...]:
     """The holds, and a momentary one for each blow: hand and object meet in that frame alone."""
     blows = [Hold(one.side, one.thing, *[one.frame] * 2) for one in releases if one.force.struck]
+    struck = {(blow.side, blow.thing, blow.first) for blow in blows}
     kept = [
         hold
         for hold in holds
         if not any(
-            (blow.side, blow.thing) == (hold.side, hold.thing)
-            and hold.first - 1 <= blow.first <= hold.last + 1
-            for blow in blows
+            (hold.side, hold.thing, frame) in struck
+            for frame in range(hold.first - 1, hold.last + 2)
         )
     ]
-    return tuple(sorted([*kept, *blows], key=lambda hold: (hold.first, hold.side)))
+    return in_order([*kept, *blows])
 
 
 @dataclass(frozen=True)
@@ -396,6 +354,8 @@ def leanings_of(
     for fact in observation.facts:
         if not isinstance(fact, Lies) or fact.how not in {"above", "inside"}:
             continue
+        if fact.other not in things or things[fact.other].tag is not TagType.MOBILE:
+            continue
         tilts = [
             lean
             for lean in leans
@@ -407,7 +367,7 @@ def leanings_of(
             if hold.thing == fact.body
             and any(hold.first <= tilt.first and tilt.last <= hold.last for tilt in tilts)
         ]
-        if held and fact.other in things and things[fact.other].tag is TagType.MOBILE:
+        if held:
             first = max(fact.first, min(hold.first for hold in held))
             last = min(fact.last, max(hold.last for hold in held))
             acting = {sensors[hold.side] for hold in held}
@@ -416,7 +376,7 @@ def leanings_of(
             lowest = (tilts[0].first + tilts[0].last) // 2
             if frames:
                 out.append(Leaning(fact.body, fact.other, lowest, frames))
-    return tuple(sorted(out, key=lambda poise: poise.frames))
+    return tuple(sorted(out, key=lambda leaning: leaning.frames))
 
 
 MOVES_M = 0.02
@@ -446,7 +406,7 @@ class Load:
 
 @dataclass(frozen=True)
 class Steadiness:
-    """Whether a carried object would slide or fall, at the worst frame of its ride."""
+    """Whether a carried object would slide or fall, at the worst frame."""
 
     tilt_rad: float
     """Angle between what it weighs on its bearer, which accelerates, and that one's normal."""
@@ -467,56 +427,50 @@ def loads_of(
         PlanError: An object is taken by a hand after it was carried.
     """
     out: list[Load] = []
-    carried = {hold.thing: [(hold.first, hold.last)] for hold in holds}
-    for hold in holds:
-        carried[hold.thing].append((hold.first, hold.last))
-    while True:
-        found = _next_load(paths, holds, touching, carried, out)
-        if found is None:
-            return tuple(out)
-        later = [h for h in holds if h.thing == found.thing and h.last > found.first]
-        if later:
+    carried = [(hold.thing, hold.first, hold.last) for hold in holds]
+    while found := next(_new_loads(paths, holds, touching, carried, out), None):
+        if any(hold.thing == found.thing and hold.last > found.first for hold in holds):
             raise PlanError(
                 f"a hand takes {found.thing!r} after or while {found.bearer!r} bears it, which is "
                 "not regenerated; a part of the recording before that would do: to_s with "
                 "--assume FILE"
             )
         out.append(found)
-        carried.setdefault(found.thing, []).append((found.first, found.last))
+        carried.append((found.thing, found.first, found.last))
+    return tuple(out)
 
 
-def _next_load(
+def _new_loads(
     paths: Mapping[str, RigidTransform],
     holds: tuple[Hold, ...],
     touching: list[Touching],
-    carried: Mapping[str, list[tuple[int, int]]],
+    carried: list[tuple[str, int, int]],
     known: list[Load],
-) -> Load | None:
-    """A ride that is not known yet on what is carried."""
-    have = {(ride.thing, ride.first) for ride in known}
-    for bearer, spans in carried.items():
+) -> Iterator[Load]:
+    """Loads that are not known yet on what is carried."""
+    have = {(load.thing, load.first) for load in known}
+    for bearer in dict.fromkeys(name for name, _, _ in carried):
         for contact in touching:
             pair = {contact.body, contact.other}
             if bearer not in pair or len(pair) < 2 or not pair <= set(paths):
                 continue
             (thing,) = pair - {bearer}
-            for start, end in spans:
-                ride = Load(thing, bearer, max(start, contact.first), min(end, contact.last))
-                first, last = ride.first, ride.last
+            for start, end in ((start, end) for name, start, end in carried if name == bearer):
+                first, last = max(start, contact.first), min(end, contact.last)
                 held = any(h.thing == thing and h.first < last and first < h.last for h in holds)
                 heights = [paths[name].translation[first, 2] for name in (thing, bearer)]
+                load = Load(thing, bearer, first, last)
                 new = not held and (thing, first) not in have and heights[0] >= heights[1]
-                if new and _goes_along(ride, paths):
-                    return ride
-    return None
+                if new and _goes_along(load, paths):
+                    yield load
 
 
-def _goes_along(ride: Load, paths: Mapping[str, RigidTransform]) -> bool:
+def _goes_along(load: Load, paths: Mapping[str, RigidTransform]) -> bool:
     """Whether two objects are moved and rigidly together meanwhile."""
-    if ride.last <= ride.first:
+    if load.last <= load.first:
         return False
-    part = slice(ride.first, ride.last + 1)
-    thing, lead = paths[ride.thing][part], paths[ride.bearer][part]
+    part = slice(load.first, load.last + 1)
+    thing, lead = paths[load.thing][part], paths[load.bearer][part]
     gone = np.linalg.norm(thing.translation - thing.translation[0], axis=1)
     relative = lead.inv() * thing
     off = np.linalg.norm(relative.translation - relative.translation[0], axis=1)
@@ -530,13 +484,11 @@ def with_loads(
 ) -> dict[str, RigidTransform]:
     """The paths of all objects, what is carried going along with its bearer."""
     out = dict(paths)
-    for ride in loads:
-        own, bearer = out[ride.thing], out[ride.bearer]
-        seat = bearer[ride.first].inv() * own[ride.first]
-        there = bearer[ride.first : ride.last + 1] * seat
-        after = [there[-1]] * (len(own) - 1 - ride.last)
-        parts = [*own[: ride.first], *there, *after] if ride.first else [*there, *after]
-        out[ride.thing] = RigidTransform.concatenate(parts)
+    for load in loads:
+        own, bearer = out[load.thing], out[load.bearer]
+        there = bearer[load.first : load.last + 1] * (bearer[load.first].inv() * own[load.first])
+        after = [there[-1]] * (len(own) - 1 - load.last)
+        out[load.thing] = RigidTransform.concatenate([*list(own)[: load.first], *there, *after])
     return out
 
 
@@ -552,38 +504,22 @@ def steadiness(
     middle = seat.apply(np.array(mesh.convex_hull.center_mass))
     corners = seat.apply(np.array(mesh.vertices))
     low = corners[:, 2].min()
-    base = corners[corners[:, 2] < low + RESTS_M][:, :2]
-    pulls = bearer.rotation.inv().apply(_pull(bearer, middle, rate_hz))
+    spots, half = bearer.apply(middle), max(round(HALF_S * rate_hz), 1)
+    padded = np.pad(spots, ((half, half), (0, 0)), mode="edge")
+    speeding = (padded[2 * half :] + padded[: -2 * half] - 2.0 * spots) / (half / rate_hz) ** 2
+    pulls = bearer.rotation.inv().apply(np.array([0.0, 0.0, -GRAVITY_MPS2]) - speeding)
     tilts = np.arccos(np.clip(-pulls[:, 2] / np.linalg.norm(pulls, axis=1), -1.0, 1.0))
     down = np.minimum(pulls[:, 2], -1e-6)
-    spots = middle[:2] - pulls[:, :2] * ((middle[2] - low) / down)[:, None]
-    inside = _inside(base, spots)
+    marks = middle[:2] - pulls[:, :2] * ((middle[2] - low) / down)[:, None]
+    base = corners[corners[:, 2] < low + RESTS_M][:, :2]
+    try:
+        sides = ConvexHull(base).equations
+        inside = -(marks @ sides[:, :2].T + sides[:, 2]).max(axis=1)
+    except QhullError:  # it stands on an edge or a point
+        inside = -np.linalg.norm(marks - base.mean(axis=0), axis=1)
     return Steadiness(
         float(tilts.max()), int(tilts.argmax()), float(inside.min()), int(inside.argmin())
     )
-
-
-def _pull(
-    bearer: RigidTransform, middle: Float[np.ndarray, "3"], rate_hz: float
-) -> Float[np.ndarray, "frames 3"]:
-    """Gravity less the acceleration of a point of the bearer [m/s^2]."""
-    spots = bearer.apply(middle)
-    half = max(round(HALF_S * rate_hz), 1)
-    padded = np.pad(spots, ((half, half), (0, 0)), mode="edge")
-    ahead, back = padded[2 * half :], padded[: -2 * half]
-    speeding = (ahead - 2.0 * spots + back) / (half / rate_hz) ** 2
-    return np.asarray(np.array([0.0, 0.0, -GRAVITY_MPS2]) - speeding)
-
-
-def _inside(
-    base: Float[np.ndarray, "points 2"], spots: Float[np.ndarray, "frames 2"]
-) -> Float[np.ndarray, "frames"]:
-    """How far spots are inside the convex hull of points, negative outside [m]."""
-    try:
-        sides = ConvexHull(base).equations
-    except QhullError:  # it stands on an edge or a point
-        return -np.linalg.norm(spots - base.mean(axis=0), axis=1)
-    return np.asarray(-(spots @ sides[:, :2].T + sides[:, 2]).max(axis=1))
 
 
 @dataclass(frozen=True)
@@ -594,7 +530,7 @@ class CoHeld:
     lead: Hold
 
     @property
-    def ride(self) -> Load:
+    def load(self) -> Load:
         """From when to when it goes along with the other one."""
         first, last = max(self.hold.first, self.lead.first), min(self.hold.last, self.lead.last)
         return Load(self.hold.thing, self.lead.thing, first, last)
@@ -610,25 +546,23 @@ def co_held_of(holds: tuple[Hold, ...], paths: Mapping[str, RigidTransform]) -> 
         PlanError: One of two objects that a hand moves together is moved without the other, too.
     """
     out: list[CoHeld] = []
-    for hold in sorted(holds, key=lambda one: (one.first, one.first - one.last, one.thing)):
-        known = {companion.hold for companion in out}
-        for lead in holds:
-            before = (lead.first, lead.first - lead.last, lead.thing)
-            same = lead.side == hold.side and lead.thing != hold.thing and lead not in known
-            if same and before < (hold.first, hold.first - hold.last, hold.thing):
-                found = CoHeld(hold, lead)
-                if _goes_along(found.ride, paths):
-                    _check_together(found, paths)
-                    out.append(found)
-                    break
+    ordered = sorted(holds, key=lambda one: (one.first, one.first - one.last, one.thing))
+    for number, hold in enumerate(ordered):
+        beside = {found.hold for found in out}
+        leads = {one for one in ordered[:number] if one.side == hold.side} - beside
+        for lead in (one for one in holds if one in leads and one.thing != hold.thing):
+            found = CoHeld(hold, lead)
+            if _goes_along(found.load, paths):
+                _check_together(found, paths)
+                out.append(found)
+                break
     return tuple(out)
 
 
 def _check_together(found: CoHeld, paths: Mapping[str, RigidTransform]) -> None:
-    ride = found.ride
     for hold in (found.hold, found.lead):
         path = paths[hold.thing].translation
-        for first, last in ((hold.first, ride.first), (ride.last, hold.last)):
+        for first, last in ((hold.first, found.load.first), (found.load.last, hold.last)):
             gone = np.linalg.norm(path[first : last + 1] - path[first], axis=1).max(initial=0.0)
             if gone >= MOVES_M:
                 raise PlanError(
@@ -638,7 +572,7 @@ def _check_together(found: CoHeld, paths: Mapping[str, RigidTransform]) -> None:
                 )
 
 
-def led_holds(holds: tuple[Hold, ...], co_held: tuple[CoHeld, ...]) -> tuple[Hold, ...]:
+def led_holds(holds: Iterable[Hold], co_held: tuple[CoHeld, ...]) -> tuple[Hold, ...]:
     """The holds by which hands are led."""
     beside = {companion.hold for companion in co_held}
     return tuple(hold for hold in holds if hold not in beside)
@@ -648,8 +582,7 @@ def hand_spans(
     holds: list[Hold], co_held: tuple[CoHeld, ...]
 ) -> Iterator[tuple[Hold, frozenset[str]]]:
     """From when to when a hand has objects, and which ones."""
-    for lead in led_holds(tuple(holds), co_held):
+    for lead in led_holds(holds, co_held):
         own = [lead, *(companion.hold for companion in co_held if companion.lead == lead)]
         first, last = min(hold.first for hold in own), max(hold.last for hold in own)
-        things = frozenset(hold.thing for hold in own)
-        yield Hold(lead.side, lead.thing, first, last), things
+        yield replace(lead, first=first, last=last), frozenset(hold.thing for hold in own)

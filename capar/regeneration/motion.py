@@ -12,29 +12,22 @@ from capar.regeneration.solving import Solver, vectors
 FADE_S = 0.6
 """How long before the first key frame and after the last one a motion is drawn to them [s]."""
 
+SETTLING = 60
+"""Iterations for the first frame."""
 
-@dataclass(frozen=True, eq=False)
-class Guide:
-    """A posture for every frame, and how strongly a motion is drawn to it."""
-
-    postures: Float[np.ndarray, "frames posture"]
-    weights: Float[np.ndarray, "frames"]
-    """[1]."""
+Guide = tuple[np.ndarray, np.ndarray]
+"""A posture for every frame, and how strongly a motion is drawn to it [1]."""
 
 
 def guide_of(draft: Draft) -> Guide:
     """The key postures of a draft whose grips are chosen, and straight paths between them."""
-    keys, rest = draft.key_postures()
-    times, shown = draft.source.times, sorted(keys)
+    solver, times = draft.solver(), draft.source.times
+    shown = draft.key_frames(draft.source.holds)
+    rows = [solver.rest, *(draft.key_posture(solver, frame) for frame in shown), solver.rest]
     at_s = [times[shown[0]] - FADE_S, *times[shown], times[shown[-1]] + FADE_S]
-    rows = np.array([rest, *(keys[frame] for frame in shown), rest])
-    postures = np.stack([np.interp(times, at_s, column) for column in rows.T], axis=1)
+    postures = [np.interp(times, at_s, column) for column in np.array(rows).T]
     weights = np.interp(times, at_s, [0.0, *np.ones(len(shown)), 0.0])
-    return Guide(postures, weights)
-
-
-SETTLING = 60
-"""Iterations for the first frame."""
+    return np.stack(postures, axis=1), weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,16 +45,15 @@ def perform_plan(plan: Plan, guide: Guide | None = None) -> Motion:
     solver = Solver(plan.human, (*scene.place, scene.floor_m), scene.heading, (clear,))
     targets = plan.targets()
     things = {name: vectors(path) for name, path in plan.things.items()}
-    if guide is not None:
-        solver.draw_to(guide.postures[0], float(guide.weights[0]))
-    for clear.active in (False, True):  # the path from standing at ease may lead through objects
-        solver.follow(targets[0], most=SETTLING)
-    solver.frame.bound(1.0 / plan.source.rate_hz)
-    postures = np.empty((len(plan.source.times), len(solver.posture)))
-    for frame in range(len(postures)):
+    postures = np.empty((len(targets), len(solver.posture)))
+    for frame, target in enumerate(targets):
         if guide is not None:
-            solver.draw_to(guide.postures[frame], float(guide.weights[frame]))
+            solver.draw_to(guide[0][frame], float(guide[1][frame]))
+        if frame == 0:
+            for clear.active in (False, True):  # the way from ease may lead through objects
+                solver.follow(target, most=SETTLING)
+            solver.frame.bound(1.0 / plan.source.rate_hz)
         clear.place({name: rows[frame] for name, rows in things.items()})
-        solver.follow(targets[frame])
+        solver.follow(target)
         postures[frame] = solver.posture
     return Motion(plan, postures)

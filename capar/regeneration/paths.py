@@ -1,8 +1,11 @@
 """Paths of objects from goal to goal, and of hands from hold to hold, clear of the scene."""
 
-from collections.abc import Callable, Iterator, Mapping
+import functools
+import itertools
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -12,7 +15,7 @@ from scipy.spatial.transform import RigidTransform
 from capar.body.human import Human
 from capar.body.recording import HAND_SEGMENTS
 from capar.model.capture import TagType
-from capar.regeneration.body_frames import BodyFrames, free_pose, rest_pose
+from capar.regeneration.body_frames import BodyFrames, free_pose
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.forces import with_throws
 from capar.regeneration.goals import (
@@ -57,6 +60,9 @@ STEEPEST_M = 0.001
 STRIDE = 2
 """Frames between two at which a path is checked."""
 
+Places = Mapping[str, Float[np.ndarray, "7"]]
+"""Where objects are, by name, as ``vectors`` has it."""
+
 
 class Carrying:
     """Paths of held objects through a scene."""
@@ -88,47 +94,32 @@ class Carrying:
         Raises:
             PlanError: However far it is lifted, it goes through something.
         """
-        best, least = STRAIGHT, np.inf
+        still = {n: vectors(pose) for n, pose in others.items()}
+        seats = {name: RigidTransform.identity(), **along}
+        tried: list[tuple[float, RigidTransform, Detour]] = []
         for detour in (Detour(lift) for lift in LIFTS_M):
-            path = self._mapped(name, part, ends, turn, detour, others)
-            short = self._short(name, path, others)
-            for borne, seat in along.items():
-                short = max(short, self._short(borne, path * seat, others))
-            if short < least:
-                best, least = detour, short
-            if least <= 0.0:
+            path = mapped(
+                part, *ends, turn=turn, detour=detour, heading=self.scene.heading, kind=self.kind
+            )
+            path = self._out_of_ground(name, path, still)
+            short = max(self._short(one, path * seat, still) for one, seat in seats.items())
+            tried.append((short, path, detour))
+            if short <= 0.0:
                 break
-        path = self._mapped(name, part, ends, turn, best, others)
-        if least > 0.0:
-            self._check_free(name, path, others)
-            for borne, seat in along.items():
-                self._check_free(borne, path * seat, others)
-        return path, best
+        short, path, detour = min(tried, key=lambda row: row[0])
+        if short > 0.0:
+            for one, seat in seats.items():
+                self._check_free(one, path * seat, still)
+        return path, detour
 
-    def _mapped(
-        self,
-        name: str,
-        part: RigidTransform,
-        ends: tuple[RigidTransform, RigidTransform],
-        turn: float,
-        detour: Detour,
-        others: Mapping[str, RigidTransform],
-    ) -> RigidTransform:
-        path = mapped(
-            part, *ends, turn=turn, detour=detour, heading=self.scene.heading, kind=self.kind
-        )
-        return self._out_of_ground(name, path, others)
-
-    def _out_of_ground(
-        self, name: str, path: RigidTransform, others: Mapping[str, RigidTransform]
-    ) -> RigidTransform:
+    def _out_of_ground(self, name: str, path: RigidTransform, still: Places) -> RigidTransform:
         """The path raised where it sinks a little deeper into something fixed than both ends do.
 
         Recorded objects do, as they are tipped up: their poses are a few millimetres off.
         """
         things = self.scene.things
-        fixed = {n: vectors(p) for n, p in others.items() if things[n].tag is TagType.FIXED}
-        gaps = [dict(self._gaps(name, pose, fixed)) for pose in vectors(path)]
+        fixed = {n: pose for n, pose in still.items() if things[n].tag is TagType.FIXED}
+        gaps = [self._gaps(name, pose, fixed) for pose in vectors(path)]
         usual = {n: min(0.0, gaps[0].get(n, 0.0), gaps[-1].get(n, 0.0)) for n in fixed}
         sunk = np.array([max([0.0, *(usual[n] - gap for n, gap in g.items())]) for g in gaps])
         if not 0.0 < sunk.max() <= SUNK_M:
@@ -138,41 +129,33 @@ class Carrying:
         by_m = np.minimum(wide, STEEPEST_M * np.minimum(frames, frames[::-1]))
         return RigidTransform.from_translation(np.outer(by_m, [0.0, 0.0, 1.0])) * path
 
-    def _check_free(
-        self, name: str, path: RigidTransform, others: Mapping[str, RigidTransform]
-    ) -> None:
+    def _check_free(self, name: str, path: RigidTransform, still: Places) -> None:
         """No path leads deeper into something than both of its ends are."""
-        poses, still = vectors(path), {n: vectors(pose) for n, pose in others.items()}
-        ends = [dict(self._gaps(name, poses[row], still)) for row in (0, -1)]
-        found = (pair for pose in poses for pair in self._gaps(name, pose, still))
-        other, gap = min(found, key=lambda pair: pair[1], default=("", 0.0))
-        if gap < min(0.0, *(end.get(other, 0.0) for end in ends)) - CUT_M:
+        gaps = [self._gaps(name, pose, still) for pose in vectors(path)]
+        gap, other = min(((gap, n) for g in gaps for n, gap in g.items()), default=(0.0, ""))
+        if gap < min(0.0, *(end.get(other, 0.0) for end in (gaps[0], gaps[-1]))) - CUT_M:
             raise PlanError(
                 f"{name!r} would go {-1e3 * gap:.0f} mm into {other!r} on its way, however far it "
                 "is lifted"
             )
 
-    def _short(
-        self, name: str, path: RigidTransform, others: Mapping[str, RigidTransform]
-    ) -> float:
+    def _short(self, name: str, path: RigidTransform, still: Places) -> float:
         """By how much it comes too near something, at worst [m]."""
-        poses, still = vectors(path), {n: vectors(pose) for n, pose in others.items()}
-        ends = [dict(self._gaps(name, poses[row], still)) for row in (0, -1)]
+        poses = vectors(path)
+        ends = [self._gaps(name, poses[row], still) for row in (0, -1)]
         worst = 0.0
-        for row in range(0, len(path), STRIDE):
-            for other, gap in self._gaps(name, poses[row], still):
+        for pose in poses[::STRIDE]:
+            for other, gap in self._gaps(name, pose, still).items():
                 least = min(BESIDE_M, *(end.get(other, BESIDE_M) for end in ends))
                 worst = max(worst, least - SLACK_M - gap)
         return worst
 
-    def _gaps(
-        self, name: str, pose: Float[np.ndarray, "7"], others: Mapping[str, Float[np.ndarray, "7"]]
-    ) -> Iterator[tuple[str, float]]:
-        self.around.place(self.posture, {**others, name: pose})
-        for pair in self.around.things_near():
-            other = pair.thing if pair.part == name else pair.part
-            if name in (pair.part, pair.thing) and other in others:
-                yield other, pair.distance_m
+    def _gaps(self, name: str, pose: Float[np.ndarray, "7"], still: Places) -> dict[str, float]:
+        """Distances from the others near it [m]."""
+        self.around.place(self.posture, {**still, name: pose})
+        pairs = (p for p in self.around.things_near() if name in (p.part, p.thing))
+        found = {p.thing if p.part == name else p.part: p.distance_m for p in pairs}
+        return {other: gap for other, gap in found.items() if other in still}
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,8 +168,7 @@ class ObjectPaths:
     paths: dict[str, RigidTransform]
     """``T_world_thing`` by name at every frame."""
 
-    told: tuple[str, ...]
-    """What is to be reported of them."""
+    notes: tuple[str, ...]
 
 
 def object_paths(
@@ -200,8 +182,9 @@ def object_paths(
     carrying = Carrying(human, scene, style.kind)
     still = {name: thing.pose for name, thing in scene.things.items()}
     out, constraints = {}, scene_constraints(source, scene)
-    beside = {companion.hold.thing: companion for companion in source.co_held}
-    told = [
+    beside = {companion.hold.thing for companion in source.co_held}
+    loads = (*(companion.load for companion in source.co_held), *source.loads)
+    notes = [
         f"{name!r} keeps to its {one.kind} on {one.other!r}"
         for name, one in constraints.items()
         if one.kind != PLANE
@@ -212,63 +195,47 @@ def object_paths(
             spans = handled(source, name)
             out[name] = guided_poses(source, scene, name, style.things[name], spans)
             continue
-        poses = [scene.thing(name).pose] * count
-        if name in beside:
-            out[name] = RigidTransform.concatenate(poses)
-            continue
-        for start, goal in zip(goals.get(name, []), goals.get(name, [])[1:], strict=False):
-            part = style.things[name][start.frame : goal.frame + 1]
-            if goal.frame > start.frame and not throw_of(source, name, first=start.frame):
-                if rests(recorded[start.frame : goal.frame + 1], start.pose, goal.pose):
-                    poses[start.frame : goal.frame + 1] = [start.pose] * len(part)
-                else:
-                    ends = start.pose, goal.pose
-                    part = flattened(part) if kind == PLANE else part
-                    along = _borne(source, scene, name, start.frame, goal.frame)
-                    others = {n: pose for n, pose in still.items() if n not in {name, *along}}
-                    piece, detour = carrying.way(name, part, ends, others, turn, along)
-                    piece = flattened(piece) if kind == PLANE and detour == STRAIGHT else piece
-                    poses[start.frame : goal.frame + 1] = list(piece)
-                    if detour != STRAIGHT:
-                        told.append(_lifted(name, source.times[start.frame], detour))
+        poses, own = [still[name]] * count, [] if name in beside else goals.get(name, [])
+        for start, goal in itertools.pairwise(own):
+            frames = slice(start.frame, goal.frame + 1)
             poses[goal.frame :] = [goal.pose] * (count - goal.frame)
+            if goal.frame == start.frame or throw_of(source, name, first=start.frame):
+                continue
+            if rests(recorded[frames], start.pose, goal.pose):
+                poses[frames] = [start.pose] * (goal.frame + 1 - start.frame)
+                continue
+            part = style.things[name][frames]
+            along: dict[str, RigidTransform] = {}
+            for load in loads:  # what it bears, what lies in the hand with it, and what these bear
+                now = load.first < goal.frame and start.frame < load.last
+                if now and (load.bearer == name or load.bearer in along):
+                    along[load.thing] = still[load.bearer].inv() * still[load.thing]
+            others = {n: pose for n, pose in still.items() if n not in {name, *along}}
+            part = flattened(part) if kind == PLANE else part
+            piece, detour = carrying.way(name, part, (start.pose, goal.pose), others, turn, along)
+            piece = flattened(piece) if kind == PLANE and detour == STRAIGHT else piece
+            poses[frames] = list(piece)
+            if detour != STRAIGHT:
+                notes.append(
+                    f"{name!r} is lifted {1e3 * detour.lift_m:.0f} mm over what stands in its way "
+                    f"at {source.times[start.frame]:.2f} s"
+                )
         out[name] = with_throws(source, scene, name, RigidTransform.concatenate(poses))
-    loads = (*(companion.ride for companion in source.co_held), *source.loads)
-    told += [
-        f"{ride.thing!r} goes along with {ride.bearer!r} from {source.times[ride.first]:.2f} to "
-        f"{source.times[ride.last]:.2f} s"
-        for ride in loads
+    notes += [
+        f"{load.thing!r} goes along with {load.bearer!r} from {source.times[load.first]:.2f} to "
+        f"{source.times[load.last]:.2f} s"
+        for load in loads
     ]
-    return ObjectPaths(goals, with_loads(out, loads), tuple(told))
-
-
-def _borne(
-    source: Source, scene: Scene, name: str, first: int, last: int
-) -> dict[str, RigidTransform]:
-    """``T_thing_other`` of what goes along with an object between two frames, from frame to frame.
-
-    That is what it bears, and what lies in the hand beside it, with what these bear.
-    """
-    out: dict[str, RigidTransform] = {}
-    for ride in (*(companion.ride for companion in source.co_held), *source.loads):
-        if ride.first < last and first < ride.last and (ride.bearer == name or ride.bearer in out):
-            below, own = scene.thing(name).pose, scene.thing(ride.thing).pose
-            out[ride.thing] = below.inv() * own
-    return out
+    return ObjectPaths(goals, with_loads(out, loads), tuple(notes))
 
 
 def borne_steadily(
-    source: Source, scene: Scene, paths: Mapping[str, RigidTransform], ride: Load
+    source: Source, scene: Scene, paths: Mapping[str, RigidTransform], load: Load
 ) -> Steadiness:
     """Whether an object would stay on what bears it along these paths."""
-    bearer = paths[ride.bearer][ride.first : ride.last + 1]
-    seat = bearer[0].inv() * paths[ride.thing][ride.first]
-    return steadiness(scene.thing(ride.thing), seat, bearer, source.rate_hz)
-
-
-def _lifted(name: str, at_s: float, detour: Detour) -> str:
-    over = f"{1e3 * detour.lift_m:.0f} mm over what stands in its way"
-    return f"{name!r} is lifted {over} at {at_s:.2f} s"
+    bearer = paths[load.bearer][load.first : load.last + 1]
+    seat = bearer[0].inv() * paths[load.thing][load.first]
+    return steadiness(scene.thing(load.thing), seat, bearer, source.rate_hz)
 
 
 HAND_LIFTS_M = (0.0, 0.04, 0.08, 0.12, 0.18, 0.25, 0.35)
@@ -329,15 +296,14 @@ def hand_paths(
     style: Style,
 ) -> tuple[dict[str, RigidTransform], dict[tuple[str, int], Detour]]:
     """``T_world_hand`` by side at every frame, and the detours that were taken."""
-    turn = scene.heading - source.scene.heading
     clearance = _Clearance(scene, new, things, care, source.rate_hz)
     out, detours = {}, {}
     for side in source.hands:
         holds = [hold for hold in source.holds if hold.side == side]
         poses: list[RigidTransform] = [new.rest[side]] * len(source.times)
         for hold in holds:
-            for frame in range(hold.first, hold.last + 1):
-                poses[frame] = things[hold.thing][frame] * grips[hold]
+            part = slice(hold.first, hold.last + 1)
+            poses[part] = list(things[hold.thing][part] * grips[hold])
         spans = dict(hand_spans(holds, source.co_held))
         for before, after in zip([None, *spans], [*spans, None], strict=True):
             first = before.last if before else 0
@@ -346,62 +312,39 @@ def hand_paths(
                 continue
             start, goal = poses[first], poses[last]
             if not before:
-                start = _free(source, old, new, side, (first, last), goal if after else None)
+                start = free_pose(source, old, new, side, (first, last), goal if after else None)
             if not after:
-                goal = _free(source, old, new, side, (last, first), start if before else None)
-            touched = {thing for each in (before, after) if each for thing in spans[each]}
-            part = style.hands[side][first : last + 1]
-            away = _away(start, before), _away(goal, after)
-
-            def path(
-                detour: Detour,
-                part: RigidTransform = part,
-                ends: tuple[RigidTransform, RigidTransform] = (start, goal),
-                away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = away,
-            ) -> RigidTransform:
-                facing = scene.heading
-                return mapped(
-                    part,
-                    *ends,
-                    turn=turn,
-                    detour=detour,
-                    heading=facing,
-                    away=away,
-                    kind=style.kind,
-                )
-
-            held = before is not None, after is not None
-            apart = after.thing if after and _moved_at_once(source, after) else ""
-            best = clearance.first_clear(side, path, first, touched, held, apart)
-            poses[first : last + 1] = list(path(best))
+                held = start if before else None
+                goal = free_pose(source, old, new, side, (last, first), held)
+            lead = functools.partial(
+                mapped,
+                style.hands[side][first : last + 1],
+                start,
+                goal,
+                turn=scene.heading - source.scene.heading,
+                heading=scene.heading,
+                away=(_off(start, before), _off(goal, after)),
+                kind=style.kind,
+            )
+            apart = ""
+            if after:  # an object that is moved as soon as it is taken
+                spots = source.paths[after.thing].translation
+                soon = min(after.first + round(AT_ONCE_S * source.rate_hz), after.last)
+                if np.linalg.norm(spots[soon] - spots[after.first]) > SOON_M:
+                    apart = after.thing
+            free = _Free(
+                side, first, frozenset(t for each in (before, after) if each for t in spans[each]),
+                (before is not None, after is not None), apart,
+            )  # fmt: skip
+            best = smallest_detour(functools.partial(clearance.short, free, lead))
+            poses[first : last + 1] = list(lead(detour=best))
             if best != STRAIGHT:
                 detours[side, first] = best
         out[side] = RigidTransform.concatenate(poses)
     return out, detours
 
 
-def _free(
-    source: Source,
-    old: BodyFrames,
-    new: BodyFrames,
-    side: str,
-    frames: tuple[int, int],
-    held: RigidTransform | None,
-) -> RigidTransform:
-    """Where a hand begins or ends that is free then, by the hold next to that if there is one."""
-    if held is None:
-        return rest_pose(source, old, new, side, frames[0])
-    return free_pose(source, old, new, side, frames, held)
-
-
-def _moved_at_once(source: Source, hold: Hold) -> bool:
-    """Whether an object is moved as soon as it is taken."""
-    spots = source.paths[hold.thing].translation
-    soon = min(hold.first + round(AT_ONCE_S * source.rate_hz), hold.last)
-    return bool(np.linalg.norm(spots[soon] - spots[hold.first]) > SOON_M)
-
-
-def _away(hand: RigidTransform, hold: Hold | None) -> Float[np.ndarray, "3"]:
+def _off(hand: RigidTransform, hold: Hold | None) -> Float[np.ndarray, "3"]:
     """Off what a hand holds, along its palm; nowhere where it holds nothing."""
     return np.asarray(hand.rotation.apply([0.0, 0.0, -1.0])) if hold else np.zeros(3)
 
@@ -446,72 +389,46 @@ class _Clearance:
         self.leaving, self.coming = round(LEAVING_S * rate_hz), round(COMING_S * rate_hz)
         self.stride = max(int(CHECK_S * rate_hz), 1)
 
-    def first_clear(
+    def short(
         self,
-        side: str,
-        path: Callable[[Detour], RigidTransform],
-        first: int,
-        touched: set[str],
-        held: tuple[bool, bool],
-        apart: str,
-    ) -> Detour:
-        """The smallest detour that is clear; if none is, the smallest about as good as the best.
-
-        Of an object that is moved as soon as it is taken the hand is clear until shortly before.
-        """
-        return smallest_detour(
-            lambda detour, enough: self._short(
-                side, path(detour), first, touched, held, apart, enough
-            )
-        )
-
-    def _short(
-        self,
-        side: str,
-        path: RigidTransform,
-        first: int,
-        touched: set[str],
-        held: tuple[bool, bool],
-        apart: str,
+        free: "_Free",
+        lead: Callable[..., RigidTransform],
+        detour: Detour,
         enough: float,
     ) -> float:
         """By how much the path is too near, at worst; not further than is decided [m].
 
-        A hand may be as near as where it hangs at ease, and around a hold as near as there.
+        A hand may be as near as where it hangs at ease, and around a hold as near as there. Of an
+        object that is moved as soon as it is taken it is clear until shortly before.
         """
-        around, margin_m = self._seen_from(side, path, first), self.care.margin_m
-        ends = [self._gaps(side, around, k) for k in (0, len(path) - 1)]
+        path = lead(detour=detour)
+        margin_m, last = self.care.margin_m, len(path) - 1
+        # Where objects are if the scene is moved so that the hand stays at ease.
+        shift, part = (
+            self.new.rest[free.side] * path.inv(),
+            slice(free.first, free.first + last + 1),
+        )
+        around = {name: vectors(shift * track[part]) for name, track in self.things.items()}
+        ends = [self._gaps(free.side, around, frame) for frame in (0, last)]
         beside = [{name: gap.get(name, margin_m) - 0.001 for name in self.things} for gap in ends]
-        resting = [gaps for gaps, holds in zip(beside, held, strict=True) if not holds]
+        resting = [gaps for gaps, holds in zip(beside, free.held, strict=True) if not holds]
         wanted = {
             near: {name: min([margin_m, *(gaps[name] for gaps in some)]) for name in self.things}
             for near, some in ((True, beside), (False, resting))
         }
         worst = 0.0
-        for frame in range(0, len(path), self.stride):
-            ahead = len(path) - 1 - frame
-            near = min(frame, ahead) <= self.leaving
-            for name, gap in self._gaps(side, around, frame).items():
-                least = (
-                    wanted[near][name]
-                    if name not in touched
-                    else -HAND_CUT_M
-                    if near
-                    else self.care.off_m
-                )
-                if name == apart and ahead > self.coming and frame > self.leaving:
+        for frame in range(0, last + 1, self.stride):
+            near = min(frame, last - frame) <= self.leaving
+            for name, gap in self._gaps(free.side, around, frame).items():
+                least = wanted[near][name]
+                if name in free.touched:
+                    least = -HAND_CUT_M if near else self.care.off_m
+                if name == free.apart and last - frame > self.coming and frame > self.leaving:
                     least = max(least, COMING_M)
                 worst = max(worst, least - gap)
             if worst >= enough:
                 break
         return worst
-
-    def _seen_from(
-        self, side: str, path: RigidTransform, first: int
-    ) -> dict[str, Float[np.ndarray, "frames 7"]]:
-        """Where objects are if the scene is moved so that the hand stays at ease."""
-        shift, part = self.new.rest[side] * path.inv(), slice(first, first + len(path))
-        return {name: vectors(shift * track[part]) for name, track in self.things.items()}
 
     def _gaps(
         self, side: str, around: Mapping[str, Float[np.ndarray, "frames 7"]], frame: int
@@ -522,3 +439,18 @@ class _Clearance:
         for pair in self.around.near([f"{side}_{each}" for each in HAND_SEGMENTS]):
             out[pair.thing] = min(out.get(pair.thing, np.inf), pair.distance_m)
         return out
+
+
+class _Free(NamedTuple):
+    """An interval in which a hand is free."""
+
+    side: str
+    first: int
+    touched: frozenset[str]
+    """What it held before and holds after."""
+
+    held: tuple[bool, bool]
+    """Whether it holds something before and after."""
+
+    apart: str
+    """What it takes after and moves at once; empty if nothing."""

@@ -2,8 +2,8 @@
 
 import itertools
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from itertools import groupby
+from dataclasses import dataclass, replace
+from operator import attrgetter
 
 import numpy as np
 from jaxtyping import Float
@@ -15,7 +15,7 @@ from capar.model.par import Condition
 from capar.regeneration.collisions import NEAR_M, Pair, Surroundings, inner_gap
 from capar.regeneration.forces import ForceKind, end_velocity, flight_faults
 from capar.regeneration.goals import scene_constraints
-from capar.regeneration.holds import FRICTION, SETTLED_M, Hold, Load
+from capar.regeneration.holds import FRICTION, SETTLED_M
 from capar.regeneration.motion import Motion
 from capar.regeneration.paths import borne_steadily
 from capar.regeneration.planning import Plan
@@ -31,7 +31,7 @@ MOVING_M = 0.05
 
 @dataclass(frozen=True)
 class Gate:
-    """One object that is demanded of a motion."""
+    """A measured value that is demanded of a motion."""
 
     name: str
     value: float
@@ -54,7 +54,7 @@ class Gate:
 
 @dataclass(frozen=True)
 class Measure:
-    """Something that is told of a motion and not demanded."""
+    """A measured value that is reported of a motion and not demanded."""
 
     name: str
     value: float
@@ -73,7 +73,7 @@ class Quality:
     @property
     def passed(self) -> bool:
         """Whether every gate is."""
-        return all(gate.passed for gate in self.gates)
+        return not self.failed
 
     @property
     def failed(self) -> tuple[str, ...]:
@@ -91,30 +91,61 @@ def failures(quality: Quality) -> str:
     return ", ".join(f"{gate.name} {gate.value:.1f} {gate.unit} ({gate.bodies})" for gate in rows)
 
 
+Worst = tuple[float, int, str]
+"""A value, the frame in which it is worst, and what it is of."""
+
+NONE: Worst = (0.0, -1, "")
+
+
+def worst_of(values: Float[np.ndarray, "frames"], bodies: str, first: int = 0) -> Worst:
+    """The largest of some values, which begin at a frame."""
+    row = int(values.argmax())
+    return float(values[row]), first + row, bodies
+
+
+def within(name: str, worst: Worst, limit: float, unit: str = "mm") -> Gate:
+    """A gate that a value has to stay within; a value in metres is stated in millimetres."""
+    value = 1e3 * worst[0] if unit.startswith("mm") else worst[0]
+    return Gate(name, value, limit, unit, False, worst[1], worst[2])
+
+
+def distance_gate(name: str, limit_mm: float, nearest: tuple[Pair, int]) -> Gate:
+    """A gate that the distance of a pair has to reach."""
+    pair, frame = nearest
+    bodies = f"{pair.part}, {pair.thing}" if pair.part else ""
+    return Gate(name, 1e3 * pair.distance_m, limit_mm, "mm", True, frame, bodies)
+
+
 def quality(motion: Motion) -> Quality:
     """Verify a motion at every frame."""
-    hands = performed_hands(motion)
-    errors = _errors(motion, hands)
+    plan, hands = motion.plan, performed_hands(motion)
     contacts, thumb = _contact_gates(motion)
+    feet = plan.human.sites(motion.postures, ["right_foot", "left_foot"])
+    slid = (worst_of(_gone(spots), name) for name, (spots, _) in feet.items())
     gates = (
-        *_constraint_gates(motion, errors),
-        *_guide_gates(motion, hands),
-        *_throw_gates(motion, hands),
+        *_event_gates(motion, hands),
+        *_guide_gates(plan, hands),
+        *_throw_gates(plan, hands),
         *contacts,
-        *_body_gates(motion),
-        _still_gate(motion),
-        _profile_gate(motion, hands),
-        *_borne_gates(motion.plan),
-        *_together_gates(motion, hands),
+        within("feet", max(slid, key=lambda worst: worst[0]), 3.0),
+        *joint_gates(plan.human, motion.postures, plan.source.rate_hz),
+        _still_gate(plan),
+        _profile_gate(plan, hands),
+        *_borne_gates(plan),
+        *_together_gates(plan, hands),
     )
     return Quality(gates, (thumb,))
+
+
+def _gone(spots: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
+    """Distances from the first of some places [m]."""
+    return np.linalg.norm(spots - spots[0], axis=1)
 
 
 def performed_hands(motion: Motion) -> dict[str, RigidTransform]:
     """``T_world_hand`` of the body as it moved."""
     plan = motion.plan
-    names = [f"{side}_palm" for side in plan.hands]
-    sites = plan.human.sites(motion.postures, names)
+    sites = plan.human.sites(motion.postures, [f"{side}_palm" for side in plan.hands])
     out = {}
     for side in plan.hands:
         spots, turns = sites[f"{side}_palm"]
@@ -123,202 +154,131 @@ def performed_hands(motion: Motion) -> dict[str, RigidTransform]:
     return out
 
 
-@dataclass(frozen=True, eq=False)
-class _Error:
-    """How far a hand is from its place on what it holds."""
-
-    hold: Hold
-    metres: Float[np.ndarray, "frames"]
-    radians: Float[np.ndarray, "frames"]
-
-
-def _errors(motion: Motion, hands: dict[str, RigidTransform]) -> list[_Error]:
-    out = []
-    for grip in motion.plan.grips:
-        hold = grip.hold
+def _event_gates(motion: Motion, hands: Mapping[str, RigidTransform]) -> Iterator[Gate]:
+    """How far hands are from their places on what they hold, and the head from what meets it."""
+    plan = motion.plan
+    events = {goal.frame for goals in plan.goals.values() for goal in goals}
+    events |= {frame for grip in plan.grips for frame in (grip.hold.first, grip.hold.last)}
+    at, turned, along = [NONE], [NONE], [NONE]
+    for grip in plan.grips:
+        hold, names = grip.hold, f"{grip.hold.side} hand, {grip.hold.thing}"
         part = slice(hold.first, hold.last + 1)
-        off = grip.pose.inv() * motion.plan.things[hold.thing][part].inv() * hands[hold.side][part]
-        out.append(_Error(hold, np.linalg.norm(off.translation, axis=1), off.rotation.magnitude()))
-    return out
+        off = grip.pose.inv() * plan.things[hold.thing][part].inv() * hands[hold.side][part]
+        metres, radians = np.linalg.norm(off.translation, axis=1), off.rotation.magnitude()
+        along.append(worst_of(metres, names, hold.first))
+        for frame in events.intersection(range(hold.first, hold.last + 1)):
+            at.append((float(metres[frame - hold.first]), frame, names))
+            turned.append((float(np.degrees(radians[frame - hold.first])), frame, names))
+    eyes, _ = plan.human.sites(motion.postures, ["between_eyes"])["between_eyes"]
+    for meeting in plan.source.meetings:
+        middle = (meeting.first + meeting.last) // 2
+        for frame in (meeting.first, middle, meeting.last):
+            off_m = float(np.linalg.norm(eyes[frame] - plan.head.translation[middle]))
+            at.append((off_m, frame, f"{meeting.thing}, {meeting.part}"))
+    yield within("event position", max(at), 1.0)
+    yield within("event rotation", max(turned), 1.0, "deg")
+    yield within("on the way", max(along), 2.0)
 
 
-def _constraint_gates(motion: Motion, errors: list[_Error]) -> Iterator[Gate]:
-    plan = motion.plan
-    frames = {f for e in errors for f in (e.hold.first, e.hold.last)}
-    frames |= {goal.frame for goals in plan.goals.values() for goal in goals}
-    at, way_m, turned = (0.0, -1, ""), (0.0, -1, ""), (0.0, -1, "")
-    for error in errors:
-        names = f"{error.hold.side} hand, {error.hold.thing}"
-        for row in range(len(error.metres)):
-            frame = error.hold.first + row
-            way_m = max(way_m, (error.metres[row], frame, names))
-            if frame in frames:
-                at = max(at, (error.metres[row], frame, names))
-                turned = max(turned, (error.radians[row], frame, names))
-    head = _head_error(motion)
-    at = max(at, head)
-    yield Gate("event position", 1e3 * at[0], 1.0, "mm", False, at[1], at[2])
-    yield Gate("event rotation", float(np.degrees(turned[0])), 1.0, "deg", False, *turned[1:])
-    yield Gate("on the way", 1e3 * way_m[0], 2.0, "mm", False, way_m[1], way_m[2])
-
-
-def _guide_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gate]:
+def _guide_gates(plan: Plan, hands: Mapping[str, RigidTransform]) -> Iterator[Gate]:
     """How far objects, and hands on them, are off the hinge, rail or plane that they keep to."""
-    plan = motion.plan
     found = scene_constraints(plan.source, plan.scene)
-    worst = (0.0, -1, "")
-    for name, constraint in found.items():
-        start, path = plan.scene.thing(name).pose, plan.things[name]
-        middle = plan.scene.thing(name).shape.bounds.mean(axis=0)
-        tracks = [(f"{name}, {constraint.kind}", 0, middle, path.apply(middle))]
+    worst = [NONE]
+    for name, line in found.items():
+        thing, path = plan.scene.thing(name), plan.things[name]
+        middle = thing.shape.bounds.mean(axis=0)
+        strays = line.strays(thing.pose, middle, path.apply(middle))
+        worst.append(worst_of(strays, f"{name}, {line.kind}"))
         for grip in plan.grips:
-            if grip.hold.thing == name:
-                part = slice(grip.hold.first, grip.hold.last + 1)
-                spots = hands[grip.hold.side][part].translation
-                named = f"{grip.hold.side} hand, {constraint.kind}"
-                tracks.append((named, grip.hold.first, grip.pose.translation, spots))
-        for bodies, first, at, spots in tracks:
-            off = constraint.strays(start, at, spots)
-            worst = max(worst, (float(off.max()), first + int(off.argmax()), bodies))
+            hold = grip.hold
+            if hold.thing == name:
+                spots = hands[hold.side][hold.first : hold.last + 1].translation
+                strays = line.strays(thing.pose, grip.pose.translation, spots)
+                worst.append(worst_of(strays, f"{hold.side} hand, {line.kind}", hold.first))
     if found:
-        yield Gate("constraint way", 1e3 * worst[0], 2.0, "mm", False, *worst[1:])
+        yield within("constraint way", max(worst), 2.0)
 
 
-def _throw_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gate]:
+def _throw_gates(plan: Plan, hands: Mapping[str, RigidTransform]) -> Iterator[Gate]:
     """Objects fly by gravity alone, with the velocities of the hands that throw and catch them."""
-    plan, times = motion.plan, motion.plan.source.times
-    off, gain, jump = (0.0, -1, ""), (0.0, -1, ""), (0.0, -1, "")
-    for toss in plan.source.throws:
-        name, part = toss.thing, slice(toss.first, toss.last + 1)
+    times, off, gain, jump = plan.source.times, [NONE], [NONE], [NONE]
+    for throw in plan.source.throws:
+        name, part = throw.thing, slice(throw.first, throw.last + 1)
         middle = plan.scene.thing(name).shape.bounds.mean(axis=0)
         spots = plan.things[name].apply(middle)
         faults = flight_faults(times[part], spots[part])
-        off = max(off, (faults.off_m[0], toss.first + faults.off_m[1], name))
-        gain = max(gain, (faults.gain[0], toss.first + faults.gain[1], name))
-        for grip in plan.grips:
+        for worst, (value, row) in zip((off, gain), faults, strict=True):
+            worst.append((value, throw.first + row, name))
+        for grip, (frame, sign) in itertools.product(
+            plan.grips, ((throw.first, 1), (throw.last, -1))
+        ):
             hold = grip.hold
-            held = hands[hold.side] * grip.pose.inv()
-            for frame, sign in ((toss.first, 1), (toss.last, -1)):
-                if hold.thing == name and (hold.last, hold.first)[sign < 0] == frame:
-                    within, free = _around(times, frame, sign), _around(times, frame, -sign)
-                    hand_mps = end_velocity(sign * times[within], held[within].apply(middle))
-                    thing_mps = end_velocity(-sign * times[free], spots[free])
-                    apart = float(np.linalg.norm(hand_mps + thing_mps))
-                    jump = max(jump, (apart, frame, f"{hold.side} hand, {name}"))
+            if hold.thing == name and (hold.last if sign > 0 else hold.first) == frame:
+                held, free = (
+                    [f for f in (frame - 2 * by, frame - by, frame) if 0 <= f < len(times)]
+                    for by in (sign, -sign)
+                )
+                in_hand = (hands[hold.side] * grip.pose.inv())[held].apply(middle)
+                hand_mps = end_velocity(sign * times[held], in_hand)
+                thing_mps = end_velocity(-sign * times[free], spots[free])
+                apart = float(np.linalg.norm(hand_mps + thing_mps))
+                jump.append((apart, frame, f"{hold.side} hand, {name}"))
     if plan.source.throws:
-        yield Gate("flight by gravity", 1e3 * off[0], 1.0, "mm", False, *off[1:])
-        yield Gate("flight energy", gain[0], 0.01, "J/kg", False, *gain[1:])
-        yield Gate("flight speed", jump[0], 0.3, "m/s", False, *jump[1:])
-
-
-def _around(times: Float[np.ndarray, "frames"], frame: int, sign: int) -> list[int]:
-    """Three frames that come to one, from before it, or from after it backwards."""
-    return [f for f in (frame - 2 * sign, frame - sign, frame) if 0 <= f < len(times)]
-
-
-def _head_error(motion: Motion) -> tuple[float, int, str]:
-    """How far the head is from where an object meets it, at worst [m]."""
-    plan, worst = motion.plan, (0.0, -1, "")
-    spots, _ = plan.human.sites(motion.postures, ["between_eyes"])["between_eyes"]
-    for meeting in plan.source.meetings:
-        frame = (meeting.first + meeting.last) // 2
-        for at in (meeting.first, frame, meeting.last):
-            off = float(np.linalg.norm(spots[at] - plan.head.translation[frame]))
-            worst = max(worst, (off, at, f"{meeting.thing}, {meeting.part}"))
-    return worst
+        yield within("flight by gravity", max(off), 1.0)
+        yield within("flight energy", max(gain), 0.01, "J/kg")
+        yield within("flight speed", max(jump), 0.3, "m/s")
 
 
 def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
     """Penetration of anything, and how far free hands keep from what they do not touch.
 
     A thumb is not posed, and its mannequin's base stands out from the palm: what it cuts of the
-    object that its hand takes is told apart.
+    object that its hand takes is reported apart.
     """
-    plan = motion.plan
+    plan, deepest, inside = motion.plan, [], set[frozenset[str]]()
     around = Surroundings(plan.human, plan.scene)
-    far = (Pair(np.inf, "", ""), -1)
-    deepest, nearest, thumb = far, far, far
-    inner = _inner_gaps(plan)
-    for ride, gap_m in inner.values():
-        deepest = min(deepest, (Pair(gap_m, ride.thing, ride.bearer), ride.first))
+    for load in plan.source.loads:  # in a hollow object, as far from its surface all the way
+        bearer, thing = (plan.scene.thing(name).shape for name in (load.bearer, load.thing))
+        seat = plan.things[load.bearer][load.first].inv() * plan.things[load.thing][load.first]
+        gap_m = inner_gap(bearer, thing, seat)
+        if gap_m is not None:
+            inside.add(frozenset((load.thing, load.bearer)))
+            deepest.append((Pair(gap_m, load.thing, load.bearer), load.first))
     things = {name: vectors(path) for name, path in plan.things.items()}
-    for frame in range(len(motion.postures)):
-        around.place(motion.postures[frame], {n: rows[frame] for n, rows in things.items()})
+    span = LEAVING_S * plan.source.rate_hz
+    nearest, thumbs = list[tuple[Pair, int]](), list[tuple[Pair, int]]()
+    for frame, posture in enumerate(motion.postures):
+        around.place(posture, {n: rows[frame] for n, rows in things.items()})
+        taken = {
+            (hold.side, hold.thing)
+            for hold in plan.source.holds
+            if hold.first - span <= frame <= hold.last + span
+        }
+        busy = {side for side, _ in taken}
         for pair in around.near():
             side = pair.part.partition("_")[0]
-            if pair.part.endswith("_thumb") and _takes(motion, side, pair.thing, frame):
-                thumb = min(thumb, (pair, frame))
+            if pair.part.endswith("_thumb") and (side, pair.thing) in taken:
+                thumbs.append((pair, frame))
                 continue
-            deepest = min(deepest, (pair, frame))
-            if side in plan.hands and is_hand(pair.part) and _is_free(motion, pair, frame):
-                nearest = min(nearest, (pair, frame))
+            deepest.append((pair, frame))
+            if is_hand(pair.part) and side in plan.hands and side not in busy:
+                nearest.append((pair, frame))
         for pair in around.things_near():
-            if frozenset((pair.part, pair.thing)) not in inner:
-                deepest = min(deepest, (pair, frame))
+            if frozenset((pair.part, pair.thing)) not in inside:
+                deepest.append((pair, frame))
+    far = (Pair(np.inf, "", ""), -1)
     gates = [
-        _distance_gate("penetration", -1.0, *deepest),
-        _distance_gate("free hand clear", 10.0, *nearest),
+        distance_gate("penetration", -1.0, min(deepest, default=far)),
+        distance_gate("free hand clear", 10.0, min(nearest, default=far)),
     ]
-    pair, frame = thumb
+    pair, frame = min(thumbs, default=far)
     bodies = f"{pair.part}, {pair.thing}"
     return gates, Measure("thumb and what it holds", 1e3 * pair.distance_m, "mm", frame, bodies)
-
-
-def _inner_gaps(plan: Plan) -> dict[frozenset[str], tuple[Load, float]]:
-    """What is carried in a hollow object, and how far it is from its surface all the way [m]."""
-    out = {}
-    for ride in plan.source.loads:
-        bearer, thing = plan.scene.thing(ride.bearer), plan.scene.thing(ride.thing)
-        seat = plan.things[ride.bearer][ride.first].inv() * plan.things[ride.thing][ride.first]
-        gap_m = inner_gap(bearer.shape, thing.shape, seat)
-        if gap_m is not None:
-            out[frozenset((ride.thing, ride.bearer))] = ride, gap_m
-    return out
-
-
-def _distance_gate(name: str, limit_mm: float, pair: Pair, frame: int) -> Gate:
-    bodies = f"{pair.part}, {pair.thing}" if pair.part else ""
-    return Gate(name, 1e3 * pair.distance_m, limit_mm, "mm", True, frame, bodies)
 
 
 def is_hand(part: str) -> bool:
     """Whether a part of the body is of a hand, the thumb left out."""
     return part.endswith(("_hand", "_fingers", "_fingertips"))
-
-
-def _is_free(motion: Motion, pair: Pair, frame: int) -> bool:
-    """Whether a hand holds nothing, nor just did nor is about to, least of all that object."""
-    side = pair.part.partition("_")[0]
-    holds = _holds(motion, side)
-    if _takes(motion, side, pair.thing, frame):
-        return False
-    return not any(_near_hold(motion, hold, frame, LEAVING_S) for hold in holds)
-
-
-def _takes(motion: Motion, side: str, thing: str, frame: int) -> bool:
-    """Whether a hand holds that object, or is about to, or has just let it go."""
-    own = (hold for hold in _holds(motion, side) if hold.thing == thing)
-    return any(_near_hold(motion, hold, frame, LEAVING_S) for hold in own)
-
-
-def _holds(motion: Motion, side: str) -> list[Hold]:
-    return [hold for hold in motion.plan.source.holds if hold.side == side]
-
-
-def _near_hold(motion: Motion, hold: Hold, frame: int, span_s: float) -> bool:
-    span = span_s * motion.plan.source.rate_hz
-    return hold.first - span <= frame <= hold.last + span
-
-
-def _body_gates(motion: Motion) -> Iterator[Gate]:
-    plan, postures = motion.plan, motion.postures
-    feet = plan.human.sites(postures, ["right_foot", "left_foot"])
-    slid = {n: np.linalg.norm(spots - spots[0], axis=1) for n, (spots, _) in feet.items()}
-    foot = max(slid, key=lambda name: float(slid[name].max()))
-    yield Gate(
-        "feet", 1e3 * float(slid[foot].max()), 3.0, "mm", False, int(slid[foot].argmax()), foot
-    )
-    yield from joint_gates(plan.human, postures, plan.source.rate_hz)
 
 
 def joint_gates(
@@ -328,125 +288,91 @@ def joint_gates(
     low, high = human.ranges.T
     angles = postures[:, ROOT_SIZE:]
     out = np.maximum(np.maximum(low - angles, angles - high), 0.0)
-    frame, hinge = np.unravel_index(int(out.argmax()), out.shape)
-    yield Gate(
-        "joint limits", float(np.degrees(out.max())), 0.01, "deg", False,
-        int(frame), human.joints[int(hinge)],
-    )  # fmt: skip
     speeds = np.abs(np.diff(angles, axis=0)) * rate_hz
-    frame, hinge = np.unravel_index(int(speeds.argmax()), speeds.shape)
-    yield Gate(
-        "joint speed", float(speeds.max()), 15.0, "rad/s", False,
-        int(frame), human.joints[int(hinge)],
-    )  # fmt: skip
+    for name, values, limit, unit in (
+        ("joint limits", np.degrees(out), 0.01, "deg"), ("joint speed", speeds, 15.0, "rad/s"),
+    ):  # fmt: skip
+        frame, hinge = np.unravel_index(int(values.argmax()), values.shape)
+        yield within(name, (float(values.max()), int(frame), human.joints[int(hinge)]), limit, unit)
     hips = np.linalg.norm(np.diff(postures[:, :3], axis=0), axis=1) * rate_hz
-    yield Gate("pelvis speed", float(hips.max()), 1.5, "m/s", False, int(hips.argmax()))
+    yield within("pelvis speed", worst_of(hips, ""), 1.5, "m/s")
 
 
-def _still_gate(motion: Motion) -> Gate:
+def _still_gate(plan: Plan) -> Gate:
     """What no hand holds stays where it is."""
-    plan, worst = motion.plan, (0.0, -1, "")
+    worst = [NONE]
     for name, path in plan.things.items():
         steps = np.linalg.norm(np.diff(path.translation, axis=0), axis=1)
         for span in plan.source.carried:
             if span.thing == name:
                 steps[span.first : span.last] = 0.0
-        for launch in plan.source.releases:
-            if launch.thing == name:
-                steps[launch.frame :] = 0.0
-        worst = max(worst, (float(steps.max()), int(steps.argmax()), name))
-    return Gate("things not held", 1e3 * worst[0], 0.5, "mm a frame", False, *worst[1:])
+        for release in plan.source.releases:
+            if release.thing == name:
+                steps[release.frame :] = 0.0
+        worst.append(worst_of(steps, name))
+    return within("things not held", max(worst), 0.5, "mm a frame")
 
 
 def _borne_gates(plan: Plan) -> Iterator[Gate]:
     """What is carried neither slides nor falls; none where nothing is."""
-    found = [
-        (borne_steadily(plan.source, plan.scene, plan.things, r), r) for r in plan.source.loads
-    ]
-    if not found:
+    loads = plan.source.loads
+    if not loads:
         return
+    found = [(borne_steadily(plan.source, plan.scene, plan.things, load), load) for load in loads]
     tilted, one = max(found, key=lambda pair: pair[0].tilt_rad)
     narrow, other = min(found, key=lambda pair: pair[0].inside_m)
+    tilt = float(np.degrees(tilted.tilt_rad)), one.first + tilted.tilt_frame
     slides = float(np.degrees(np.arctan(FRICTION)))
-    yield Gate(
-        "borne: not to slide", float(np.degrees(tilted.tilt_rad)), slides, "deg", False,
-        one.first + tilted.tilt_frame, f"{one.thing} on {one.bearer}",
-    )  # fmt: skip
-    yield Gate(
-        "borne: not to fall", 1e3 * narrow.inside_m, 0.0, "mm", True,
-        other.first + narrow.inside_frame, f"{other.thing} on {other.bearer}",
-    )  # fmt: skip
+    yield within("borne: not to slide", (*tilt, f"{one.thing} on {one.bearer}"), slides, "deg")
+    pair = Pair(narrow.inside_m, "", ""), other.first + narrow.inside_frame
+    fall = distance_gate("borne: not to fall", 0.0, pair)
+    yield replace(fall, bodies=f"{other.thing} on {other.bearer}")
 
 
-def _together_gates(motion: Motion, hands: dict[str, RigidTransform]) -> Iterator[Gate]:
+def _together_gates(plan: Plan, hands: Mapping[str, RigidTransform]) -> Iterator[Gate]:
     """What one hand holds together does not slide in it; none where there is nothing."""
-    worst = (-1.0, -1, "")
-    for companion in motion.plan.source.co_held:
-        ride, hand = companion.ride, hands[companion.hold.side]
-        part = slice(ride.first, ride.last + 1)
-        for name in (ride.thing, ride.bearer):
-            local = hand[part].inv() * motion.plan.things[name][part]
-            off = np.linalg.norm(local.translation - local.translation[0], axis=1)
-            found = (float(off.max()), ride.first + int(off.argmax()), name)
-            worst = max(worst, found)
-    if worst[1] >= 0:
-        yield Gate("in one hand: not to slide", 1e3 * worst[0], 2.0, "mm", False, *worst[1:])
+    worst: list[Worst] = []
+    for pair in plan.source.co_held:
+        load, hand = pair.load, hands[pair.hold.side]
+        part = slice(load.first, load.last + 1)
+        for name in (load.thing, load.bearer):
+            local = hand[part].inv() * plan.things[name][part]
+            worst.append(worst_of(_gone(local.translation), name, load.first))
+    if worst:
+        yield within("in one hand: not to slide", max(worst), 2.0)
 
 
-def _profile_gate(motion: Motion, hands: dict[str, RigidTransform]) -> Gate:
-    """Correlation of the speeds of hands along their paths with those of the style, at worst."""
-    plan, worst = motion.plan, (1.0, -1, "")
+def _profile_gate(plan: Plan, hands: Mapping[str, RigidTransform]) -> Gate:
+    """Correlation of the speeds of hands along their paths with those of the style, at worst.
+
+    A living hand slides a little on what it carries, and performed it does not: there its speed is
+    compared with the one of a hand that had been rigidly on the object. The planned path is the
+    model where none is recorded, or where a hand strikes so that the object moves as it did.
+    """
+    even, worst = plan.style.kind is Kind.EVEN, (1.0, -1, "")
+    striking = {one.side for one in plan.source.releases if plan.style.force is ForceKind.SAME}
     for side, hand in hands.items():
-        new, old = hand.translation, _model(plan, side).translation
+        model = plan.hands[side] if even or side in striking else plan.style.hands[side]
+        new, old = hand.translation, model.translation
         if min(way(new)[-1], way(old)[-1]) < MOVING_M + 2.0 * SETTLED_M:
             continue
-        for first, last in _pieces(motion, side):
-            held = _with_thing(plan, side, first, last)
-            model = (old if held is None else held)[first : last + 1]
-            one, two = np.diff(way(new[first : last + 1])), np.diff(way(model))
+        grips = [grip for grip in plan.grips if grip.hold.side == side]
+        edges = {0, len(new) - 1}
+        for hold in (one for one in plan.source.holds if one.side == side):
+            goals = {goal.frame for goal in plan.goals.get(hold.thing, [])}
+            edges |= {hold.first, hold.last, *goals & set(range(hold.first, hold.last + 1))}
+        for first, last in itertools.pairwise(sorted(edges)):
+            kept = (g for g in grips if g.hold.first <= first and last <= g.hold.last)
+            grip = next(kept, None)
+            if grip and not even and grip.hold.thing in plan.style.things:
+                rigid = (plan.style.things[grip.hold.thing] * grip.pose).translation
+            else:
+                rigid = old
+            one, two = (np.diff(way(path[first : last + 1])) for path in (new, rigid))
             if min(one.sum(), two.sum()) >= MOVING_M and len(one) > 3:
                 value = float(np.corrcoef(one, two)[0, 1])
                 worst = min(worst, (value, first, f"{side} hand"))
     return Gate("speed profile", worst[0], 0.98, "r", True, worst[1], worst[2])
-
-
-def _model(plan: Plan, side: str) -> RigidTransform:
-    """The path of a hand whose timing is to be kept: the planned one where none is recorded.
-
-    Nor is there one where a hand strikes faster or slower so that the object moves as it did.
-    """
-    led = {launch.side for launch in plan.source.releases if plan.style.force is ForceKind.SAME}
-    planned = plan.style.kind is Kind.EVEN or side in led
-    return plan.hands[side] if planned else plan.style.hands[side]
-
-
-def _with_thing(
-    plan: Plan, side: str, first: int, last: int
-) -> Float[np.ndarray, "frames 3"] | None:
-    """The path of a hand that had been rigidly on what it holds throughout some frames.
-
-    A living hand slides a little on what it carries, and performed it does not; its speed is
-    compared with the object's.
-    """
-    for grip in plan.grips:
-        hold = grip.hold
-        if hold.side == side and hold.first <= first and last <= hold.last:
-            carried = plan.style.kind is not Kind.EVEN and hold.thing in plan.style.things
-            return (plan.style.things[hold.thing] * grip.pose).translation if carried else None
-    return None
-
-
-def _pieces(motion: Motion, side: str) -> list[tuple[int, int]]:
-    """Intervals between events of a hand."""
-    plan = motion.plan
-    edges = {0, len(motion.postures) - 1}
-    for hold in plan.source.holds:
-        if hold.side == side:
-            edges |= {hold.first, hold.last}
-            inner = {g.frame for g in plan.goals.get(hold.thing, [])}
-            edges |= {f for f in inner if hold.first <= f <= hold.last}
-    ordered = sorted(edges)
-    return list(itertools.pairwise(ordered))
 
 
 TOUCHES_M = 0.005
@@ -507,37 +433,30 @@ def contact_gate(motion: Motion, steps: Iterable[Asserted]) -> Gate:
     begins = {0, min(1, last)}
     table = {p: True for p in pairs if min(apart_m(p, at) for at in begins) <= TOUCHES_M}
     wrong: list[tuple[int, str]] = []
-    for frame, ending in groupby(sorted(steps, key=_frame), key=_frame):
-        for step in (ended := list(ending)):
-            table = {
-                pair: holds
-                for pair, holds in table.items()
-                if step.moved not in pair or pair[0] in SIDES
-            }
+    by_frame = attrgetter("frame")
+    for frame, ending in itertools.groupby(sorted(steps, key=by_frame), key=by_frame):
+        ended = list(ending)
+        for step in ended:
+            table = {p: on for p, on in table.items() if step.moved not in p or p[0] in SIDES}
             table.update(step.contacts)
         near = sorted({max(frame - 1, 0), frame, min(frame + 1, last)})
+        actions = " and ".join(dict.fromkeys(step.action for step in ended))
         for pair, holds in table.items():
             if all((apart_m(pair, at) <= TOUCHES_M) != holds for at in near):
-                actions = " and ".join(dict.fromkeys(step.action for step in ended))
                 verb = "touch" if holds else "do not touch"
                 far = f"{1e3 * apart_m(pair, frame):.0f} mm apart by geometry"
-                who = " and ".join(pair)
-                wrong.append((frame, f"after {actions} {who} {verb} by the table, and are {far}"))
+                said = f"after {actions} {' and '.join(pair)} {verb} by the table, and are {far}"
+                wrong.append((frame, said))
     frame, said = wrong[0] if wrong else (-1, "")
     return Gate("contacts asserted", float(len(wrong)), 0.0, "wrong", False, frame, said)
-
-
-def _frame(step: Asserted) -> int:
-    return step.frame
 
 
 def contacts_of(
     conditions: Iterable[Condition], names: Mapping[str, str]
 ) -> tuple[tuple[Contact, bool], ...]:
     """The contacts among conditions, bodies by the names that they have here."""
-    found = []
-    for condition in conditions:
-        if condition.kind == "contact" and set(condition.arguments) <= set(names):
-            first, second = (names[argument] for argument in condition.arguments)
-            found.append(((first, second), condition.holds))
-    return tuple(found)
+    return tuple(
+        ((names[condition.arguments[0]], names[condition.arguments[1]]), condition.holds)
+        for condition in conditions
+        if condition.kind == "contact" and set(condition.arguments) <= set(names)
+    )

@@ -6,13 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from capar.body.anthropometry import measures_of
-from capar.body.human import Human
 from capar.body.scenes import Thing
-from capar.model.capture import Capture, Shape, TagType
+from capar.model.capture import Shape, TagType
 from capar.model.errors import UnknownNameError
 from capar.regeneration.scenes import PlanError, Scene, moved
-from capar.regeneration.sources import Source, moves, scene_of
+from capar.regeneration.sources import Source, moves
 
 Kinds = Callable[[str], tuple[str, ...]]
 """A kind and every more general one, nearest first."""
@@ -77,13 +75,16 @@ def roles_of(source: Source) -> tuple[Role, ...]:
     taking = [name for name in dict.fromkeys(acted) if name in source.scene.things]
     for name in tuple(taking):
         taking += [one for one in dict.fromkeys(ends_on(source, name)) if one and one not in taking]
-    return tuple(_role(source, name, taking) for name in taking)
-
-
-def _role(source: Source, name: str, taking: Sequence[str]) -> Role:
-    thing = source.scene.thing(name)
-    bears = tuple(other for other in taking if source.scene.support(other) == name)
-    return Role(name, kind_of(thing), thing.tag, bears, moves(source.paths[name]))
+    return tuple(
+        Role(
+            name,
+            kind_of(source.scene.thing(name)),
+            source.scene.thing(name).tag,
+            tuple(other for other in taking if source.scene.support(other) == name),
+            moves(source.paths[name]),
+        )
+        for name in taking
+    )
 
 
 def ends_on(source: Source, name: str) -> tuple[str, str]:
@@ -113,25 +114,20 @@ def bind(
         AmbiguousError: Several objects fit, and there is nobody to ask.
         PlanError: Nothing fits, or one object has two parts.
     """
-    found = _stated(roles, scene, stated)
-    while open_roles := [role for role in roles if role.name not in found]:
-        role, binding = _next(open_roles, scene, found, kinds, ask, own=own)
-        found[role.name] = binding
-    return tuple(found[role.name] for role in roles)
-
-
-def _stated(roles: Sequence[Role], scene: Scene, stated: Mapping[str, str]) -> dict[str, Binding]:
     known = {role.name for role in roles}
     found: dict[str, Binding] = {}
-    for role, thing in stated.items():
-        if role not in known:
-            raise UnknownNameError("part", role, known)
+    for name, thing in stated.items():
+        if name not in known:
+            raise UnknownNameError("part", name, known)
         scene.thing(thing)
         taken = next((one.role for one in found.values() if one.thing == thing), None)
         if taken is not None:
-            raise PlanError(f"{thing!r} cannot take the parts of {taken!r} and {role!r} both")
-        found[role] = Binding(role, thing, "as stated")
-    return found
+            raise PlanError(f"{thing!r} cannot take the parts of {taken!r} and {name!r} both")
+        found[name] = Binding(name, thing, "as stated")
+    while open_roles := [role for role in roles if role.name not in found]:
+        binding = _next(open_roles, scene, found, kinds, ask, own=own)
+        found[binding.role] = binding
+    return tuple(found[role.name] for role in roles)
 
 
 def _next(
@@ -142,63 +138,40 @@ def _next(
     ask: Ask | None,
     *,
     own: bool,
-) -> tuple[Role, Binding]:
-    """The part that is decided next, and its object: supports wait for what they bear."""
-    names = {role.name for role in roles}
+) -> Binding:
+    """The object of the part that is decided next: supports wait for what they bear."""
+    names, taken = {role.name for role in roles}, {binding.thing for binding in found.values()}
     ready = [role for role in roles if not names.intersection(role.bears)] or list(roles)
-    free = [thing for thing in scene.things.values() if not _taken(thing.name, found)]
+    free = {name: thing for name, thing in scene.things.items() if name not in taken}
+    options = []
     for role in ready:
-        beneath = _beneath(role, scene, found)
-        if any(thing.name == beneath and thing.tag is role.tag for thing in free):
-            borne = next(found[name].thing for name in role.bears if name in found)
-            return role, Binding(role.name, beneath, f"what {borne!r} stands on")
-        if own and any(thing.name == role.name for thing in free):
-            return role, Binding(role.name, role.name, "as recorded")
-    options = [(*_fitting(role, free, kinds), role) for role in ready]
-    for _, fitting, role in options:
-        if not fitting:
-            raise _nothing(role, scene)
-    sure = [row for row in options if len(row[1]) == 1]
+        borne = [found[name].thing for name in role.bears if name in found]
+        beneath = next((below for thing in borne if (below := scene.support(thing))), "")
+        if beneath in free and free[beneath].tag is role.tag:
+            return Binding(role.name, beneath, f"what {borne[0]!r} stands on")
+        if own and role.name in free:
+            return Binding(role.name, role.name, "as recorded")
+        how = "is fixed" if role.tag is TagType.FIXED else "can be moved"
+        same = [thing for thing in free.values() if thing.tag is role.tag]
+        for rank, general in enumerate(kinds(role.kind)):
+            fits = sorted(thing.name for thing in same if general in kinds(kind_of(thing)))
+            if fits:
+                options.append((rank, general, tuple(fits), how, role))
+                break
+        else:
+            raise PlanError(
+                f"nothing is left that {how} for the part of {role.name!r} ({role.kind}); the "
+                f"scene has {', '.join(sorted(scene.things))}; one more {role.kind} in it, or "
+                f"another one stated with --object {role.name}=NAME, would do"
+            )
+    sure = [option for option in options if len(option[2]) == 1]
     if sure:
-        general, fitting, role = min(sure, key=lambda row: kinds(row[2].kind).index(row[0]))
-        return role, Binding(role.name, fitting[0], f"the only {general} that {_free(role)}")
-    general, fitting, role = options[0]
+        _, general, fitting, how, role = min(sure, key=lambda option: option[0])
+        return Binding(role.name, fitting[0], f"the only {general} that {how}")
+    _, _, fitting, _, role = options[0]
     if ask is None:
         raise AmbiguousError(role, fitting)
-    return role, Binding(role.name, ask(role, fitting), "as answered")
-
-
-def _taken(name: str, found: Mapping[str, Binding]) -> bool:
-    return any(binding.thing == name for binding in found.values())
-
-
-def _beneath(role: Role, scene: Scene, found: Mapping[str, Binding]) -> str:
-    """What the object stands on that has a part which this one bears."""
-    borne = (found[name].thing for name in role.bears if name in found)
-    return next((support for thing in borne if (support := scene.support(thing))), "")
-
-
-def _fitting(role: Role, free: Sequence[Thing], kinds: Kinds) -> tuple[str, tuple[str, ...]]:
-    """The nearest kind above a part's that free objects are cases of, and these objects."""
-    same = [thing for thing in free if thing.tag is role.tag]
-    for general in kinds(role.kind):
-        fitting = [thing.name for thing in same if general in kinds(kind_of(thing))]
-        if fitting:
-            return general, tuple(sorted(fitting))
-    return role.kind, ()
-
-
-def _free(role: Role) -> str:
-    return "is fixed" if role.tag is TagType.FIXED else "can be moved"
-
-
-def _nothing(role: Role, scene: Scene) -> PlanError:
-    there = ", ".join(sorted(scene.things))
-    return PlanError(
-        f"nothing is left that {_free(role)} for the part of {role.name!r} ({role.kind}); the "
-        f"scene has {there}; one more {role.kind} in it, or another one stated with --object "
-        f"{role.name}=NAME, would do"
-    )
+    return Binding(role.name, ask(role, fitting), "as answered")
 
 
 ASIDE = "_beside"
@@ -206,15 +179,6 @@ ASIDE = "_beside"
 
 Cast = Mapping[str, str]
 """The object of the scene that takes each recorded object's part."""
-
-
-def captured_scene(capture: Capture) -> Scene:
-    """The scene that a capture was recorded in: its objects, and where the performer stood.
-
-    Raises:
-        PlanError: An object has no shape, or there is no sensor of the head.
-    """
-    return scene_of(capture, Human.of(measures_of(capture.agent)))
 
 
 def cast(
@@ -240,30 +204,20 @@ def cast(
     extras = {}
     for name, thing in scene.things.items():
         if name not in named:
-            own = name if name not in things else name + ASIDE
-            extras[own] = replace(thing, name=own)
-            named[name] = own
+            named[name] = name if name not in things else name + ASIDE
+            extras[named[name]] = replace(thing, name=named[name])
+    spots = {}
+    for name, fitted in things.items():  # where its origin is when the object's own is at a spot
+        if parts[name] in scene.spots:
+            off = np.subtract(fitted.place, scene.thing(parts[name]).place)
+            x, y, z = (float(value) for value in off + scene.spots[parts[name]])
+            spots[name] = (x, y, z)
     count = len(source.times)
-    still = {
-        name: RigidTransform.concatenate([thing.pose] * count) for name, thing in extras.items()
-    }
+    still = {n: RigidTransform.concatenate([thing.pose] * count) for n, thing in extras.items()}
     ends = {name: named[goal] for name, goal in (goals or {}).items()}
-    spots = {
-        name: _shifted(scene.spots[parts[name]], scene.thing(parts[name]), things[name])
-        for name in things
-        if parts[name] in scene.spots
-    }
     where = replace(scene, things={**things, **extras}, goals=ends, spots=spots)
     recorded = replace(source.scene, things={**source.scene.things, **extras})
     return replace(source, scene=recorded, paths={**source.paths, **still}), where
-
-
-def _shifted(
-    spot: tuple[float, float, float], actor: Thing, fitted: Thing
-) -> tuple[float, float, float]:
-    """Where the fitted object's origin is when the object's own is at a spot."""
-    x, y, z = np.asarray(spot) + np.asarray(fitted.place) - np.asarray(actor.place)
-    return float(x), float(y), float(z)
 
 
 def with_only(source: Source, names: Container[str]) -> Source:
@@ -282,7 +236,12 @@ def check_movable(source: Source, scene: Scene, parts: Cast) -> None:
     """
     for name, actor in parts.items():
         if scene.thing(actor).tag is TagType.FIXED and moves(source.paths[name]):
-            raise PlanError(f"{actor!r} is fixed and cannot be moved; {_movable(scene)}")
+            mobile = sorted(o.name for o in scene.things.values() if o.tag is TagType.MOBILE)
+            others = f"what can be moved is {', '.join(mobile)}"
+            raise PlanError(
+                f"{actor!r} is fixed and cannot be moved; "
+                f"{others if mobile else 'nothing there can be moved'}"
+            )
 
 
 def own_names(source: Source, scene: Scene, parts: Cast) -> dict[str, str]:
@@ -293,11 +252,6 @@ def own_names(source: Source, scene: Scene, parts: Cast) -> dict[str, str]:
         if name not in taken:
             found[name if name not in parts else name + ASIDE] = name
     return found
-
-
-def _movable(scene: Scene) -> str:
-    names = sorted(each.name for each in scene.things.values() if each.tag is TagType.MOBILE)
-    return f"what can be moved is {', '.join(names)}" if names else "nothing there can be moved"
 
 
 def _fitted(actor: Thing, part: Thing) -> Thing:

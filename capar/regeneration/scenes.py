@@ -1,7 +1,8 @@
 """The scene of a motion: objects, floor and stance, and changes to it by file or by seed."""
 
+import itertools
 import tomllib
-from collections.abc import Mapping, Set
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -72,84 +73,14 @@ class Scene(Things):
         return ""
 
 
+class PlanError(CaparError):
+    """A motion that this body cannot do in this scene, or that the capture does not determine."""
+
+
 def moved(scene: Scene, name: str, place: tuple[float, float, float], heading: float) -> Scene:
     """The scene with an object elsewhere; what stands on it stays where it is."""
     thing = replace(scene.thing(name), place=place, heading=heading)
     return replace(scene, things={**scene.things, name: thing})
-
-
-def resized(scene: Scene, name: str, factor: float) -> Scene:
-    """The scene with an object of another size, its lowest point as high as before.
-
-    What stands on it stands on its new top.
-    """
-    thing, riders = scene.thing(name), stack(scene, name)
-    shape = scaled(thing.shape, factor)
-    x, y, z = thing.place
-    z += float(thing.shape.bounds[0, 2] - shape.bounds[0, 2])
-    changed = replace(thing, shape=shape, place=(x, y, z))
-    higher = float(shape.size[2] - thing.shape.size[2])
-    scene = replace(scene, things={**scene.things, name: changed})
-    for rider in riders:
-        scene = _lifted(scene, rider, higher)
-    return scene
-
-
-def taken_with(scene: Scene, name: str) -> list[str]:
-    """What a hand takes together with an object by which it is led."""
-    return [other for other, lead in scene.together.items() if lead == name]
-
-
-def raised(scene: Scene, name: str, by_m: float) -> Scene:
-    """The scene with an object, and all that stands or is fastened on it, higher by so much [m]."""
-    fastened = [thing for thing in scene.things if scene.fastened.get(thing) == name]
-    for raised_one in dict.fromkeys((name, *stack(scene, name), *fastened)):
-        scene = _lifted(scene, raised_one, by_m)
-    return scene
-
-
-def stack(scene: Scene, name: str) -> list[str]:
-    """What stands on an object, and what stands on that, from below."""
-    out: list[str] = []
-    below = [name]
-    while below:
-        below = [above for above in scene.things if scene.support(above) in below]
-        out += below
-    return out
-
-
-def _lifted(scene: Scene, name: str, by_m: float) -> Scene:
-    thing = scene.thing(name)
-    x, y, z = thing.place
-    return moved(scene, name, (x, y, z + by_m), thing.heading)
-
-
-def scaled(shape: Shape, factor: float) -> Shape:
-    """A shape enlarged about its frame's origin."""
-    return Shape(
-        np.array(shape.vertices) * factor,
-        np.array(shape.faces),
-        shape.source,
-        f"{shape.description} x {factor:g}",
-    )
-
-
-def mobile(scene: Scene) -> list[str]:
-    """Names of what can be moved and is not fastened to something, sorted."""
-    return sorted(
-        thing.name
-        for thing in scene.things.values()
-        if thing.tag is TagType.MOBILE and thing.name not in scene.fastened
-    )
-
-
-def _corners(thing: Thing) -> Float[np.ndarray, "2 3"]:
-    spots = thing.pose.apply(np.array(thing.shape.vertices))
-    return np.stack([spots.min(axis=0), spots.max(axis=0)])
-
-
-class PlanError(CaparError):
-    """A motion that this body cannot do in this scene, or that the capture does not determine."""
 
 
 def moved_with(scene: Scene, name: str, place: tuple[float, float, float], heading: float) -> Scene:
@@ -164,6 +95,20 @@ def moved_with(scene: Scene, name: str, place: tuple[float, float, float], headi
     return changed
 
 
+def resized(scene: Scene, name: str, factor: float) -> Scene:
+    """The scene with an object of another size, its lowest point as high as before.
+
+    What stands on it stands on its new top.
+    """
+    thing = scene.thing(name)
+    shape = scaled(thing.shape, factor)
+    x, y, z = thing.place
+    z += float(thing.shape.bounds[0, 2] - shape.bounds[0, 2])
+    higher = _lifted(scene, stack(scene, name), float(shape.size[2] - thing.shape.size[2]))
+    changed = replace(thing, shape=shape, place=(x, y, z))
+    return replace(higher, things={**higher.things, name: changed})
+
+
 def resized_with(scene: Scene, name: str, factor: float) -> Scene:
     """The scene with an object of another size, and what goes with it likewise."""
     old = scene.thing(name)
@@ -171,20 +116,59 @@ def resized_with(scene: Scene, name: str, factor: float) -> Scene:
     for rider in _riders(scene, name):
         local = factor * old.pose.inv().apply(scene.thing(rider).place)
         x, y, z = (float(value) for value in changed.thing(name).pose.apply(local))
-        thing = resized(scene, rider, factor).thing(rider)
-        things = {**changed.things, rider: replace(thing, place=(x, y, z))}
-        changed = replace(changed, things=things)
+        thing = replace(resized(scene, rider, factor).thing(rider), place=(x, y, z))
+        changed = replace(changed, things={**changed.things, rider: thing})
     return changed
 
 
-def bases(scene: Scene) -> list[str]:
-    """Names of what bears hinges or rails, sorted."""
-    return sorted(set(scene.fastened.values()))
+def raised(scene: Scene, name: str, by_m: float) -> Scene:
+    """The scene with an object, and all that stands or is fastened on it, higher by so much [m]."""
+    fastened = [thing for thing in scene.things if scene.fastened.get(thing) == name]
+    return _lifted(scene, dict.fromkeys((name, *stack(scene, name), *fastened)), by_m)
+
+
+def _lifted(scene: Scene, names: Iterable[str], by_m: float) -> Scene:
+    for name in names:
+        x, y, z = scene.thing(name).place
+        scene = moved(scene, name, (x, y, z + by_m), scene.thing(name).heading)
+    return scene
+
+
+def stack(scene: Scene, name: str) -> list[str]:
+    """What stands on an object, and what stands on that, from below."""
+    out, below = list[str](), [name]
+    while below:
+        below = [above for above in scene.things if scene.support(above) in below]
+        out += below
+    return out
+
+
+def taken_with(scene: Scene, name: str) -> list[str]:
+    """What a hand takes together with an object by which it is led."""
+    return [other for other, lead in scene.together.items() if lead == name]
 
 
 def _riders(scene: Scene, name: str) -> list[str]:
     fastened = [rider for rider, base in scene.fastened.items() if base == name]
     return [*fastened, *taken_with(scene, name)]
+
+
+def scaled(shape: Shape, factor: float) -> Shape:
+    """A shape enlarged about its frame's origin."""
+    description = f"{shape.description} x {factor:g}"
+    vertices = np.array(shape.vertices) * factor
+    return Shape(vertices, np.array(shape.faces), shape.source, description)
+
+
+def mobile(scene: Scene) -> list[str]:
+    """Names of what can be moved and is not fastened to something, sorted."""
+    free = (thing for name, thing in scene.things.items() if name not in scene.fastened)
+    return sorted(thing.name for thing in free if thing.tag is TagType.MOBILE)
+
+
+def _corners(thing: Thing) -> Float[np.ndarray, "2 3"]:
+    spots = thing.pose.apply(np.array(thing.shape.vertices))
+    return np.stack([spots.min(axis=0), spots.max(axis=0)])
 
 
 HEIGHTS_M, SIZES, ASIDE_M = (0.6, 1.1), (0.7, 1.4), 0.1
@@ -210,8 +194,7 @@ def read_scene(path: Path, scene: Scene) -> Scene:
         FileError: The file cannot be read, or says something else.
         UnknownNameError: It names an object that is not there.
     """
-    table = read_toml(path, {"stance", "object"})
-    return _standing(path, _with_objects(path, table, scene), table.get("stance", {}), "[stance]")
+    return read_scenes(path, {"": scene})[""]
 
 
 def read_scenes(path: Path, scenes: Mapping[str, Scene]) -> dict[str, Scene]:
@@ -224,15 +207,25 @@ def read_scenes(path: Path, scenes: Mapping[str, Scene]) -> dict[str, Scene]:
     table = read_toml(path, {"stance", "object"})
     stance = dict(table.get("stance", {}))
     own = {name: stance.pop(name) for name in scenes if name in stance}
-    first = next(iter(scenes))
-    check_keys(path, "[stance]", stance, STANCE_KEYS | set(scenes))
+    check_keys(path, "[stance]", stance, STANCE_KEYS | {name for name in scenes if name})
+    first, out = next(iter(scenes)), dict(scenes)
+    for name, stated in own.items():
+        check_keys(path, f"[stance.{name}]", stated, STANCE_KEYS)
     own[first] = {**stance, **own.get(first, {})}
-    return {
-        name: _standing(
-            path, _with_objects(path, table, scene), own.get(name, {}), f"[stance.{name}]"
+    for name in scenes:
+        for thing, row in table.get("object", {}).items():
+            out[name] = _changed(path, out[name], thing, row)
+        scene, here = out[name], own.get(name, {})
+        x, y = _numbers(path, "stance.place", here.get("place", scene.place), 2)
+        degrees = here.get("heading_deg", np.degrees(scene.heading))
+        out[name] = replace(
+            scene,
+            place=(x, y),
+            heading=float(np.radians(_number(path, "heading_deg", degrees))),
+            floor_m=_number(path, "floor_m", here.get("floor_m", scene.floor_m)),
+            stays=scene.stays or "place" in here,
         )
-        for name, scene in scenes.items()
-    }
+    return out
 
 
 def read_toml(path: Path, keys: Set[str]) -> dict[str, Any]:
@@ -249,23 +242,6 @@ def read_toml(path: Path, keys: Set[str]) -> dict[str, Any]:
     return table
 
 
-def _with_objects(path: Path, table: dict[str, Any], scene: Scene) -> Scene:
-    for name, row in table.get("object", {}).items():
-        scene = _changed(path, scene, name, row)
-    return scene
-
-
-def _standing(path: Path, scene: Scene, stance: dict[str, Any], where: str) -> Scene:
-    """The scene with the performer where a table says."""
-    check_keys(path, where, stance, STANCE_KEYS)
-    x, y = _numbers(path, "stance.place", stance.get("place", scene.place), 2)
-    heading = _number(path, "heading_deg", stance.get("heading_deg", np.degrees(scene.heading)))
-    floor = _number(path, "floor_m", stance.get("floor_m", scene.floor_m))
-    stays = scene.stays or "place" in stance
-    turn = float(np.radians(heading))
-    return replace(scene, place=(x, y), heading=turn, floor_m=floor, stays=stays)
-
-
 def drawn_scene(scene: Scene, rng: np.random.Generator) -> Scene:
     """A scene with other sizes and places, its first fixed object as high as a table may be.
 
@@ -275,16 +251,18 @@ def drawn_scene(scene: Scene, rng: np.random.Generator) -> Scene:
     for name in mobile(scene):
         if name not in scene.together:
             scene = resized_with(scene, name, float(rng.uniform(*SIZES)))
-    for name in bases(scene):
-        scene = _drawn_base(scene, name, rng)
+    bases = sorted(set(scene.fastened.values()))
+    for name in bases:
+        scene = resized_with(scene, name, float(rng.uniform(*SIZES)))
+        x, y, z = (
+            float(value) for value in scene.thing(name).place + rng.uniform(-ASIDE_M, ASIDE_M, 3)
+        )
+        scene = moved_with(scene, name, (x, y, z), scene.thing(name).heading)
     fixed = [
-        name
-        for name, thing in scene.things.items()
-        if thing.tag is TagType.FIXED and name not in scene.fastened.values()
+        n for n, thing in scene.things.items() if thing.tag is TagType.FIXED and n not in bases
     ]
     if fixed:
-        thing = scene.thing(fixed[0])
-        top = thing.place[2] + float(thing.shape.bounds[1, 2])
+        top = scene.thing(fixed[0]).place[2] + float(scene.thing(fixed[0]).shape.bounds[1, 2])
         scene = raised(scene, fixed[0], float(rng.uniform(*HEIGHTS_M)) - top)
     for _ in range(ATTEMPTS):
         found = scene
@@ -292,42 +270,30 @@ def drawn_scene(scene: Scene, rng: np.random.Generator) -> Scene:
             dx, dy = rng.uniform(-ASIDE_M, ASIDE_M, 2)
             if scene.support(name) in mobile(scene) or name in scene.together:
                 continue  # it goes along with what bears it, or with what is taken together
-            beside = [o for n in taken_with(scene, name) for o in (n, *stack(scene, n))]
-            for shifted in (name, *stack(scene, name), *beside):
-                x, y, z = scene.thing(shifted).place
-                heading = scene.thing(shifted).heading
-                found = moved(found, shifted, (x + dx, y + dy, z), heading)
+            for each in (name, *taken_with(scene, name)):
+                for shifted in (each, *stack(scene, each)):
+                    x, y, z = scene.thing(shifted).place
+                    heading = scene.thing(shifted).heading
+                    found = moved(found, shifted, (x + dx, y + dy, z), heading)
         if _sound(scene, found):
             return found
     return scene
 
 
-def _drawn_base(scene: Scene, name: str, rng: np.random.Generator) -> Scene:
-    scene = resized_with(scene, name, float(rng.uniform(*SIZES)))
-    thing = scene.thing(name)
-    dx, dy, dz = (float(value) for value in rng.uniform(-ASIDE_M, ASIDE_M, 3))
-    x, y, z = thing.place
-    return moved_with(scene, name, (x + dx, y + dy, z + dz), thing.heading)
-
-
 def _sound(before: Scene, after: Scene) -> bool:
     """Whether everything stands on what it stood on, and apart from the others."""
     names = mobile(after)
-    boxes = {
-        n: after.thing(n).pose.apply(np.array(after.thing(n).shape.vertices))[:, :2] for n in names
-    }
-    for number, first in enumerate(names):
-        if after.support(first) != before.support(first):
+    if any(after.support(name) != before.support(name) for name in names):
+        return False
+    corners = {name: _corners(after.thing(name))[:, :2] for name in names}
+    for first, second in itertools.combinations(names, 2):
+        (low, high), (other_low, other_high) = corners[first], corners[second]
+        goes_along = (
+            second in (*stack(after, first), after.together.get(first))
+            or first in (*stack(after, second), after.together.get(second))
+        )  # fmt: skip
+        if not goes_along and np.maximum(low - other_high, other_low - high).max() < APART_M:
             return False
-        for second in names[number + 1 :]:
-            if second in stack(after, first) or first in stack(after, second):
-                continue
-            if after.together.get(second) == first or after.together.get(first) == second:
-                continue
-            one, two = boxes[first], boxes[second]
-            gaps = np.maximum(one.min(axis=0) - two.max(axis=0), two.min(axis=0) - one.max(axis=0))
-            if gaps.max() < APART_M:
-                return False
     return True
 
 
@@ -374,11 +340,10 @@ def _number(path: Path, key: str, value: Any) -> float:
 
 def _numbers(path: Path, key: str, value: Any, count: int) -> tuple[float, ...]:
     many = "a number" if count == 1 else f"a list of {count} numbers"
-    fault = FileError(path, f"{key} = {value!r}.", f"It is {many}.")
     try:
         out = tuple(float(each) for each in value)
     except (TypeError, ValueError):
-        raise fault from None
+        out = ()
     if len(out) != count or not np.isfinite(out).all():
-        raise fault
+        raise FileError(path, f"{key} = {value!r}.", f"It is {many}.")
     return out

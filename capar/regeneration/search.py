@@ -8,7 +8,6 @@ step    what is tried                                     the case that needs it
 goals   one for each object and event                     (no alternative)
 grips   the recorded one, turned: smallest turns first    a table or crate of another height
         drawn back along the fingers                      a forearm inside a large object
-        turned as the body itself takes the object        palms of recorded living hands
 place   the given one, then twelve around it              a wrist at its limit
 paths   the recorded one, lifted, drawn back, kept off    a table's edge, the rim of a mug
 motion  as planned                                        nearly all
@@ -18,20 +17,36 @@ motion  as planned                                        nearly all
 refuse  remedies: nearer, higher, lower, smaller, taller  what is out of reach
 ======  ================================================  ======================================
 
-``planning`` tries goals, grips and places, ``paths`` the paths; this module tries motions and
-keeps the one that fails fewest gates (``quality``).
+The motion that fails fewest gates (``quality``) is kept. ``paths`` tries the paths.
 """
 
+import itertools
+from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from capar.body.human import Human
-from capar.regeneration.motion import Guide, Motion, guide_of, perform_plan
+from capar.model.capture import TagType
+from capar.regeneration.collisions import NEAR_M, Surroundings, things_apart
+from capar.regeneration.grips import Grip, Turn, drawn_turns, turns
+from capar.regeneration.holds import led_holds
+from capar.regeneration.motion import Motion, guide_of, perform_plan
 from capar.regeneration.paths import Care
-from capar.regeneration.planning import Draft, led, reachable
+from capar.regeneration.planning import CUT_M, Draft, Miss, led
 from capar.regeneration.quality import Quality, quality
-from capar.regeneration.scenes import Scene
-from capar.regeneration.sources import Source
-from capar.regeneration.styles import Style
+from capar.regeneration.scenes import (
+    PlanError,
+    Scene,
+    mobile,
+    moved,
+    raised,
+    resized_with,
+    taken_with,
+)
+from capar.regeneration.solving import Solver
+from capar.regeneration.sources import Hold, Source
+from capar.regeneration.styles import Style, own_style
 
 WIDER = Care(margin_m=0.03, off_m=0.015)
 CARES = (Care(), WIDER, replace(WIDER, firm_s=1.0, weight=2.0))
@@ -39,6 +54,29 @@ CARES = (Care(), WIDER, replace(WIDER, firm_s=1.0, weight=2.0))
 
 BY_CARE = {"penetration", "free hand clear", "event position", "event rotation", "on the way"}
 """The gates that more care may mend: a hand that is led firmly for longer arrives in time."""
+
+MOST_TURNS, FEW_TURNS = 24, 6
+"""Turns of a grip that are tried; where another place or a remedy is sought [1]."""
+
+APART_M = 0.02
+"""Objects that a hand takes together are no more than this farther apart than they were [m]."""
+
+STEPS_M = (
+    (0.05, 0.0), (-0.05, 0.0), (0.1, 0.0), (-0.1, 0.0), (0.0, -0.1), (0.0, 0.1),
+    (0.1, -0.1), (0.1, 0.1), (-0.1, -0.1), (-0.1, 0.1), (0.2, 0.0), (-0.2, 0.0),
+)  # fmt: skip
+"""Places that are tried, from the given one ahead and to the left [m]."""
+
+NEARER_M, HIGHER_M, DRAWN_M = (
+    (0.05, 0.1, 0.15, 0.2, 0.3), (0.1, -0.1, 0.2, -0.2, 0.4, -0.4), (0.1, 0.2, 0.3)
+)  # fmt: skip
+"""Remedies that are tried where something is out of reach [m]: standing, fixed objects, others."""
+
+SMALLER, MOST_CHANGES = 0.7, 24
+"""Likewise the size of what can be moved, and how many remedies in all [1]."""
+
+TALLER_M = 0.02
+"""A recorded body that is so much taller is tried, too [m]."""
 
 
 def regenerate(
@@ -56,19 +94,15 @@ def regenerate(
 
 def best_motion(draft: Draft) -> tuple[Motion, Quality]:
     """The motion of a draft with grips that fails fewest gates."""
-    best = _careful(draft)
-    if not best[1].passed and draft.grips:
-        best = min(best, _careful(draft, guide_of(draft)), key=_failures)
-    return best
-
-
-def _careful(draft: Draft, guide: Guide | None = None) -> tuple[Motion, Quality]:
-    """The best motion of some grips, hands being led with more care where it takes that."""
     tried: list[tuple[Motion, Quality]] = []
-    for care in CARES:
-        motion = perform_plan(led(draft, care), guide)
-        tried.append((motion, quality(motion)))
-        if not BY_CARE & set(tried[-1][1].failed):
+    for guided in (False, True) if draft.grips else (False,):
+        guide = guide_of(draft) if guided else None
+        for care in CARES:
+            motion = perform_plan(led(draft, care), guide)
+            tried.append((motion, quality(motion)))
+            if not BY_CARE & set(tried[-1][1].failed):
+                break
+        if min(tried, key=_failures)[1].passed:
             break
     return min(tried, key=_failures)
 
@@ -78,3 +112,185 @@ def _failures(made: tuple[Motion, Quality]) -> tuple[int, float]:
     failed = [gate for gate in made[1].gates if not gate.passed]
     beyond = (abs(gate.value - gate.limit) / max(abs(gate.limit), 1e-9) for gate in failed)
     return len(failed), float(sum(beyond))
+
+
+def reachable(source: Source, scene: Scene, human: Human, style: Style | None = None) -> Draft:
+    """Goals, and grips that reach them, from where it stands or, unless it stays, from nearby.
+
+    Raises:
+        PlanError: Something is out of reach or cannot be put down; the message says what would
+            help.
+    """
+    style = style or own_style(source)
+    _check_co_held(source, scene, human)
+    try:
+        return _draft(source, scene, human, style)
+    except PlanError as error:
+        why = str(error)
+    for ahead_m, aside_m in () if scene.stays else STEPS_M:
+        nearby = beside(scene, ahead_m, aside_m)
+        if is_possible(source, nearby, human):
+            found = _draft(source, nearby, human, style)
+            place = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
+            found.notes.append(f"stands {place} of the given place, since there {why}")
+            return found
+    for words, changed, body in itertools.islice(_remedies(source, scene, human), MOST_CHANGES):
+        if is_possible(source, changed, body):
+            raise PlanError(f"{why}; {words} would do")
+    raise PlanError(
+        f"{why}; no other height, size, nearer place or recorded body that was tried would do"
+    )
+
+
+def why_unreachable(source: Source, scene: Scene, human: Human, style: Style) -> str | None:
+    """Why a body does not come to every goal from just there; None where it does."""
+    try:
+        _draft(source, scene, human, style)
+    except PlanError as error:
+        return str(error)
+    return None
+
+
+def is_possible(source: Source, scene: Scene, human: Human) -> bool:
+    """Whether a body comes to every goal from just there, with few turns of its grips tried."""
+    try:
+        check_stance(scene, human)
+        draft = Draft(source, scene, human, own_style(source))
+        return not draft.beyond() and not choose_grips(draft, FEW_TURNS)
+    except PlanError:
+        return False
+
+
+def _draft(source: Source, scene: Scene, human: Human, style: Style) -> Draft:
+    check_stance(scene, human)
+    draft = Draft(source, scene, human, style)
+    if choose_grips(draft, 1) and (missed := draft.beyond() or choose_grips(draft)):
+        raise PlanError(missed)
+    return draft
+
+
+def choose_grips(draft: Draft, most: int = MOST_TURNS) -> str:
+    """Choose a grip for every hold; returns what is missed, empty if nothing.
+
+    The first that reaches of so many turns of the recorded grip; if all of them are tried, and
+    the forearm is inside the object, then of those drawn back along the fingers.
+    """
+    chosen: list[Grip] = []
+    for group in _groups(led_holds(draft.source.holds, draft.source.co_held)):
+        options = turns(draft.scene.thing(group[0].thing))[:most]
+        miss, grips = _best_grips(draft, chosen, group, options)
+        if miss.ratio > 1.0 and miss.cuts and most == MOST_TURNS:
+            drawn = _best_grips(draft, chosen, group, drawn_turns())
+            miss, grips = min((miss, grips), drawn, key=lambda tried: tried[0].ratio)
+        if miss.ratio > 1.0:
+            return miss.sentence
+        chosen += grips
+    draft.grips = tuple(chosen)
+    return ""
+
+
+def _best_grips(
+    draft: Draft, chosen: list[Grip], group: list[Hold], options: list[Turn]
+) -> tuple[Miss, list[Grip]]:
+    """The first of some turns that reaches, or else the one that misses least."""
+    tried: list[tuple[Miss, list[Grip]]] = []
+    for turn in options:
+        grips = draft.gripping.grips(group, turn)
+        enough = max(min((miss.ratio for miss, _ in tried), default=np.inf), 1.0)
+        tried.append((draft.missed(chosen + grips, group, enough), grips))
+        if tried[-1][0].ratio <= 1.0:
+            break
+    return min(tried, key=lambda each: each[0].ratio)
+
+
+def _groups(holds: tuple[Hold, ...]) -> list[list[Hold]]:
+    """Holds of one object that overlap, in order of time."""
+    out: list[list[Hold]] = []
+    for hold in holds:
+        for group in out:
+            same = group[0].thing == hold.thing
+            if same and any(o.first <= hold.last and hold.first <= o.last for o in group):
+                group.append(hold)
+                break
+        else:
+            out.append([hold])
+    return out
+
+
+def check_stance(scene: Scene, human: Human) -> None:
+    """Whoever stands at ease stands in nothing.
+
+    Raises:
+        PlanError: A part of the body is inside an object.
+    """
+    around = Surroundings(human, scene)
+    solver = Solver(human, (*scene.place, scene.floor_m), scene.heading)
+    around.pose(solver.rest, {name: thing.pose for name, thing in scene.things.items()})
+    for pair in around.near():
+        if pair.distance_m < 0.0:
+            raise PlanError(
+                f"standing at ({scene.place[0]:.2f}, {scene.place[1]:.2f}) m the performer's "
+                f"{pair.part} is {-pair.distance_m * 1000:.0f} mm inside {pair.thing!r}; stand "
+                "further back, or put it elsewhere"
+            )
+
+
+def _check_co_held(source: Source, scene: Scene, human: Human) -> None:
+    """What a hand takes together stands beside each other, about as near as it did."""
+    for pair in source.co_held:
+        names = pair.hold.thing, pair.lead.thing
+        before, now = (things_apart(where, names, human) for where in (source.scene, scene))
+        new, old = (where.thing(names[1]).size.max() for where in (scene, source.scene))
+        if -CUT_M <= now <= before * max(new / old, 1.0) + APART_M:
+            continue
+        far = f"{1e3 * NEAR_M:.0f} mm or more from" if now >= NEAR_M else f"{1e3 * now:.0f} mm from"
+        where = f"{-1e3 * now:.0f} mm inside" if now < 0.0 else far
+        raise PlanError(
+            f"{names[0]!r} stands {where} {names[1]!r}, with which the {pair.hold.side} hand takes "
+            f"it; it stood {1e3 * before:.0f} mm from it: put it so"
+        )
+
+
+def beside(scene: Scene, ahead_m: float, aside_m: float) -> Scene:
+    """The scene with the performer standing so far ahead and to the left of there [m]."""
+    ahead = np.array([np.cos(scene.heading), np.sin(scene.heading)])
+    left = np.array([-ahead[1], ahead[0]])
+    x, y = np.asarray(scene.place) + ahead_m * ahead + aside_m * left
+    return replace(scene, place=(float(x), float(y)))
+
+
+def _remedies(source: Source, scene: Scene, human: Human) -> Iterator[tuple[str, Scene, Human]]:
+    """What may help, in words, and the scene and the body with it."""
+    levels = {
+        f"{name!r} {abs(by_m):.1f} m {'higher' if by_m > 0 else 'lower'}": raised(scene, name, by_m)
+        for name, thing in scene.things.items()
+        if thing.tag is TagType.FIXED
+        for by_m in HIGHER_M
+    }
+    for by_m in NEARER_M if scene.stays else ():
+        yield f"standing {by_m:.2f} m further ahead", beside(scene, by_m, 0.0), human
+    for words, level in levels.items():
+        yield words, level, human
+    nearer = "what can be moved {:.1f} m nearer to the performer"
+    for by_m in DRAWN_M:
+        yield nearer.format(by_m), _drawn_nearer(scene, by_m), human
+    for name in mobile(scene):
+        words = " and ".join(repr(one) for one in (name, *taken_with(scene, name)))
+        smaller = resized_with(scene, name, SMALLER)
+        yield f"{words} of {SMALLER:.1f} times the size", smaller, human
+    recorded_m, own_m = (body.measures["stature"] for body in (source.human, human))
+    if recorded_m > own_m + TALLER_M:
+        yield f"a body as tall as the recorded one, {recorded_m:.2f} m,", scene, source.human
+    for words, level in levels.items():
+        both = f"{words} and {nearer.format(DRAWN_M[1])}"
+        yield both, _drawn_nearer(level, DRAWN_M[1]), human
+
+
+def _drawn_nearer(scene: Scene, by_m: float) -> Scene:
+    """The scene with what can be moved nearer to where the performer stands."""
+    for name in mobile(scene):
+        thing = scene.thing(name)
+        x, y, z = thing.place
+        back = (x - by_m * np.cos(scene.heading), y - by_m * np.sin(scene.heading), z)
+        scene = moved(scene, name, back, thing.heading)
+    return scene

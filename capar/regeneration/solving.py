@@ -130,18 +130,18 @@ class Solver:
         self.goals = {side: pose[4:] for side, pose in self.home.items()}
         self.ease = mink.PostureTask(human.model, cost=share_costs(human, EASE_COST))
         self.ease.set_target(self.rest)
-        looks = self.looks.values()
-        self.tasks = [*self.palms.values(), self.head, *looks, *self._stance(), *further]
-        self.frame = FrameLimit(len(human.joints))
-        self.steps = Steps(human, self.tasks, longest_rad=LARGEST_STEP, limits=[self.frame])
-
-    def _stance(self) -> list[mink.Task]:
         feet = [mink.FrameTask(f"{s}_foot", "body", FOOT_COST, FOOT_COST) for s in SIDES]
         balance = mink.ComTask(cost=[BALANCE_COST, BALANCE_COST, 0.0])
-        for foot in feet:
-            foot.set_target_from_configuration(self.configuration)
-        balance.set_target_from_configuration(self.configuration)
-        return [*feet, balance, self.ease, mink.DampingTask(self.human.model, cost=DAMPING_COST)]
+        standing: list[mink.FrameTask | mink.ComTask] = [*feet, balance]
+        for task in standing:
+            task.set_target_from_configuration(self.configuration)
+        damping = mink.DampingTask(human.model, cost=DAMPING_COST)
+        self.tasks = [
+            *self.palms.values(), self.head, *self.looks.values(), *standing, self.ease,
+            damping, *further,
+        ]  # fmt: skip
+        self.frame = FrameLimit(len(human.joints))
+        self.steps = Steps(human, self.tasks, longest_rad=LARGEST_STEP, limits=[self.frame])
 
     def palm(self, side: str) -> RigidTransform:
         """Where a palm is."""
@@ -152,10 +152,6 @@ class Solver:
         pose = self.configuration.get_transform_frame_to_world(name, "site")
         turn = Rotation.from_quat(pose.rotation().wxyz, scalar_first=True)
         return RigidTransform.from_components(pose.translation(), turn)
-
-    def reset(self) -> None:
-        """Stand at ease."""
-        self.configuration.update(self.rest)
 
     @property
     def posture(self) -> Float[np.ndarray, "posture"]:
@@ -193,19 +189,16 @@ class Solver:
         self.steps.restart()
         missed_m, missed_rad = np.inf, np.inf
         for number in range(most):
-            self._step()
+            self.frame.gone += self.steps.step(self.configuration)
             before, (missed_m, missed_rad) = (missed_m, missed_rad), self.missed(targets)
-            if (
-                number >= STALLED
-                and not self.steps.shortened
-                and abs(before[0] - missed_m) + abs(before[1] - missed_rad) < STALL
-            ):
+            gained = abs(before[0] - missed_m) + abs(before[1] - missed_rad)
+            stalled = number >= STALLED and not self.steps.shortened and gained < STALL
+            if stalled or self.steps.settled:
                 return
-            if self.steps.settled:
-                return
-            near = missed_m < NEAR_M and missed_rad < NEAR_RAD
-            if number + 1 >= FEWEST and near and self._further_missed() < NEAR_M:
-                return
+            if number + 1 >= FEWEST and missed_m < NEAR_M and missed_rad < NEAR_RAD:
+                errors = (task.compute_error(self.configuration) for task in self.further)
+                if all(np.abs(error).max(initial=0.0) < NEAR_M for error in errors):
+                    return
 
     def missed(self, targets: Targets) -> tuple[float, float]:
         """How far the worst palm that holds something is from its target [m, rad].
@@ -220,14 +213,6 @@ class Solver:
                 metres = max(metres, float(np.linalg.norm(spot - goal)))
                 radians = max(radians, float(np.linalg.norm(twist[3:])))
         return metres, radians
-
-    def _further_missed(self) -> float:
-        """The largest error of what else is wanted."""
-        errors = (task.compute_error(self.configuration) for task in self.further)
-        return max((float(np.abs(error).max(initial=0.0)) for error in errors), default=0.0)
-
-    def _step(self) -> None:
-        self.frame.gone += self.steps.step(self.configuration)
 
 
 def vectors(pose: RigidTransform) -> Float[np.ndarray, "*frames 7"]:

@@ -16,7 +16,7 @@ from capar.body.scenes import Thing
 from capar.body.sensors import CUTOFF_HZ, target
 from capar.body.shapes import segment_surface
 from capar.body.skeleton import eyes_between
-from capar.model.capture import Capture, Sensor, Shape, Stream, TagObject, TagType
+from capar.model.capture import Capture, Shape, Stream, TagObject, TagType
 from capar.model.facts import Displaced, Touching
 from capar.model.geometry import runs, transforms
 from capar.model.observation import Observation
@@ -33,7 +33,6 @@ from capar.regeneration.holds import (
     releases_of,
     with_blows,
     with_touches,
-    with_unseen_ends,
 )
 from capar.regeneration.holds import Hold as Hold
 from capar.regeneration.holds import Leaning as Leaning
@@ -51,7 +50,10 @@ def contact_points(
     first: Shape, second: Shape, relative: RigidTransform
 ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
     """The middle of the contact on each of two shapes, in each one's own frame [m]."""
-    one, two = _points(first), _points(second)
+    one, two = (
+        np.concatenate([np.array(shape.vertices), surface_samples(shape)[0]])
+        for shape in (first, second)
+    )
     gaps, nearest = KDTree(one).query(relative.apply(two))
     patch = gaps < gaps.min() + PATCH_M
     return one[nearest[patch]].mean(axis=0), two[patch].mean(axis=0)
@@ -67,14 +69,11 @@ def surface_samples(
     return np.array(points), outwards * np.array(mesh.face_normals[faces])
 
 
-def _points(shape: Shape) -> Float[np.ndarray, "points 3"]:
-    mesh = trimesh.Trimesh(np.array(shape.vertices), np.array(shape.faces), process=False)
-    points, _ = trimesh.sample.sample_surface(mesh, SAMPLES, seed=0)
-    return np.concatenate([np.array(shape.vertices), np.array(points)])
-
-
 LEAST_SINE = 0.5
 """Of the angle between a palm's direction and its fingers' [1]."""
+
+HandAxes = tuple[np.ndarray, np.ndarray]
+"""To where a hand's straight fingers point and its palm faces, in the frame of its sensor."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,15 +87,10 @@ class HandFrame:
     """Lengths of the hand along the frame's axes [m]."""
 
 
-@dataclass(frozen=True, eq=False)
-class HandAxes:
-    """Which way a hand points and faces, as it is known of a recording's sensor."""
-
-    fingers: Float[np.ndarray, "3"]
-    """To where the straight fingers point, in the sensor's frame."""
-
-    palm: Float[np.ndarray, "3"]
-    """To where the palm faces, likewise."""
+def _framed(hull: trimesh.Trimesh, x: np.ndarray, z: np.ndarray) -> HandFrame:
+    turn = Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=1))
+    pose = RigidTransform.from_components(np.array(hull.center_mass), turn)
+    return HandFrame(pose, np.ptp(pose.inv().apply(hull.vertices), axis=0))
 
 
 def stated_hand_frame(shape: Shape, axes: HandAxes) -> HandFrame:
@@ -105,46 +99,36 @@ def stated_hand_frame(shape: Shape, axes: HandAxes) -> HandFrame:
     Raises:
         PlanError: The two are along one line.
     """
-    z = axes.palm / np.linalg.norm(axes.palm)
-    x = axes.fingers - (axes.fingers @ z) * z
-    if np.linalg.norm(x) < LEAST_SINE * np.linalg.norm(axes.fingers):
+    fingers, palm = axes
+    z = palm / np.linalg.norm(palm)
+    x = fingers - (fingers @ z) * z
+    if np.linalg.norm(x) < LEAST_SINE * np.linalg.norm(fingers):
         raise PlanError("a palm does not face along its own fingers")
-    x = x / np.linalg.norm(x)
     hull = trimesh.convex.convex_hull(np.array(shape.vertices))
-    turn = Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=1))
-    pose = RigidTransform.from_components(np.array(hull.center_mass), turn)
-    return HandFrame(pose, np.ptp(pose.inv().apply(hull.vertices), axis=0))
+    return _framed(hull, x / np.linalg.norm(x), z)
 
 
-def hand_frame(
-    shape: Shape, fingers: Float[np.ndarray, "3"], palm: Float[np.ndarray, "3"]
-) -> HandFrame:
-    """The frame along the principal axes of a hand's hull."""
+def hand_frame(shape: Shape, axes: HandAxes) -> HandFrame:
+    """The frame along the principal axes of a hand's hull, each towards the given directions."""
     hull = trimesh.convex.convex_hull(np.array(shape.vertices))
-    axes = np.array(hull.principal_inertia_vectors)
+    principal = np.array(hull.principal_inertia_vectors)
     moments = np.array(hull.principal_inertia_components)
-    x, z = axes[int(np.argmin(moments))], axes[int(np.argmax(moments))]
-    x = x if x @ fingers >= 0.0 else -x
-    z = z if z @ palm >= 0.0 else -z
-    turn = Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=1))
-    pose = RigidTransform.from_components(np.array(hull.center_mass), turn)
-    return HandFrame(pose, np.ptp(pose.inv().apply(hull.vertices), axis=0))
+    x, z = principal[int(np.argmin(moments))], principal[int(np.argmax(moments))]
+    fingers, palm = axes
+    return _framed(hull, x if x @ fingers >= 0.0 else -x, z if z @ palm >= 0.0 else -z)
+
+
+def hand_surface(human: Human, side: str) -> Shape:
+    """A body's own hand, in the frame of the hand's segment."""
+    names = tuple(f"{side}_{each}" for each in HAND_SEGMENTS)
+    return segment_surface(human.measures, names, f"{side}_hand")
 
 
 def body_hand_frame(human: Human, side: str) -> HandFrame:
     """The frame on a body's own hand, in the frame of the hand's segment."""
-    site = human.model.site(f"{side}_palm")
-    palm = Rotation.from_quat(site.quat, scalar_first=True)
-    names = tuple(f"{side}_{each}" for each in HAND_SEGMENTS)
-    surface = segment_surface(human.measures, names, f"{side}_hand")
-    return hand_frame(surface, palm.apply([1.0, 0.0, 0.0]), palm.apply([0.0, 0.0, 1.0]))
-
-
-def palm_of(human: Human, side: str, frame: HandFrame) -> RigidTransform:
-    """``T_frame_palm``: the palm's site in the hand's frame."""
-    site = human.model.site(f"{side}_palm")
-    turn = Rotation.from_quat(site.quat, scalar_first=True)
-    return frame.pose.inv() * RigidTransform.from_components(site.pos, turn)
+    palm = Rotation.from_quat(human.model.site(f"{side}_palm").quat, scalar_first=True)
+    axes = palm.apply([1.0, 0.0, 0.0]), palm.apply([0.0, 0.0, 1.0])
+    return hand_frame(hand_surface(human, side), axes)
 
 
 START_FRAMES = 10
@@ -275,44 +259,51 @@ def source_of(
     eyes = _eyes(capture, cutoff_hz)
     place, heading = stance or _stance(human, eyes)
     tracks = {name: _path(body.stream, cutoff_hz) for name, body in capture.bodies.items()}
-    objects = [each for each in capture.objects if each.tag is not TagType.SELF]
     things, paths = {}, {}
-    for each in objects:
-        things[each.name], paths[each.name] = _thing(each, tracks[each.name])
-    touching = [each for each in observation.facts if isinstance(each, Touching)]
+    for each in capture.objects:
+        if each.tag is not TagType.SELF:
+            things[each.name], paths[each.name] = _thing(each, tracks[each.name])
+    touching = [fact for fact in observation.facts if isinstance(fact, Touching)]
     shoulder = eyes.translation.mean(axis=0) - [0.0, 0.0, 0.12 * human.measures["stature"]]
     hands = {}
     for sensor in capture.acting:
-        if sensor.end_effector == "hand" and sensor.side in {"right", "left"}:
-            near = _touched(sensor, touching, paths, things)
-            known = (axes or {}).get(sensor.side)
-            hands[sensor.side] = _hand(sensor, tracks[sensor.name], shoulder, near, known)
-    told = [*notes, "the point of contact on each hand is measured on the capture's meshes"]
-    tracks_of_hands = {side: (hand.sensor, hand.path) for side, hand in hands.items()}
-    holds = holds_of(tracks_of_hands, paths, touching)
-    holds = with_unseen_ends(holds, tracks_of_hands, touching, capture.times)
+        side = sensor.side
+        if sensor.end_effector == "hand" and side in {"right", "left"}:
+            path, shape = tracks[sensor.name], sensor.shape
+            if shape is None:
+                raise PlanError(
+                    f"sensor {sensor.name!r} has no shape of the hand; give it a mesh or a box"
+                )
+            if axes and side in axes:
+                frame = stated_hand_frame(shape, axes[side])
+            else:
+                near = [f for f in touching if f.body == sensor.name and f.other in things]
+                frame = hand_frame(shape, _hand_axes(shape, path, shoulder, near, things, paths))
+            hands[side] = HandTrack(sensor.name, side, frame, path * frame.pose)
+    by_side = {side: (hand.sensor, hand.path) for side, hand in hands.items()}
     displaced = [fact for fact in observation.facts if isinstance(fact, Displaced)]
-    holds = with_touches(holds, tracks_of_hands, touching, displaced, capture.times)
+    holds = holds_of(by_side, paths, touching)
+    holds = with_touches(holds, by_side, touching, displaced, capture.times)
     sides = {hand.sensor: side for side, hand in hands.items()}
     releases, throws = releases_of(observation.forces, sides, holds, capture.times, paths)
     holds = with_blows(holds, releases)
-    meetings = meetings_of(capture, eyes, paths, touching)
     entered = _entered(capture, holds, hands, touching)
+    told = [*notes, "the point of contact on each hand is measured on the capture's meshes"]
     told += [
         f"hands and forearms may enter {name!r}, whose size is assumed, as the recorded hand does"
         for name in sorted(entered)
     ]
-    sensors = {side: hand.sensor for side, hand in hands.items()}
-    leanings = leanings_of(observation, sensors, things, holds)
-    fastened = {guide.object: guide.base for guide in observation.guides if guide.object in things}
     co_held = co_held_of(holds, paths)
-    together = {each.hold.thing: each.lead.thing for each in co_held}
     scene = Scene(
-        things, place, heading, floor_m, entered=entered, fastened=fastened, together=together
-    )
+        things, place, heading, floor_m, entered=entered,
+        fastened={one.object: one.base for one in observation.guides if one.object in things},
+        together={pair.hold.thing: pair.lead.thing for pair in co_held},
+    )  # fmt: skip
     made = Source(
-        capture, observation, human, scene,
-        hands, paths, eyes, holds, meetings, leanings, tuple(told), releases, throws,
+        capture, observation, human, scene, hands, paths, eyes, holds,
+        meetings_of(capture, eyes, paths, touching),
+        leanings_of(observation, {side: name for name, side in sides.items()}, things, holds),
+        tuple(told), releases, throws,
         loads=loads_of(paths, holds, touching), co_held=co_held,
     )  # fmt: skip
     if checked:
@@ -320,32 +311,16 @@ def source_of(
     return made
 
 
-def check_source(source: Source) -> None:
-    """Whoever performs stands, and whatever moves has a mover.
-
-    Raises:
-        PlanError: The performer walks, or something moves that no hand holds or set going.
-    """
-    _check_stands(source)
-    touching = [fact for fact in source.observation.facts if isinstance(fact, Touching)]
-    _check_movers(source, touching)
-
-
-def scene_of(capture: Capture, human: Human) -> Scene:
-    """The objects of a capture where they are at the beginning, and where the performer stands.
+def captured_scene(capture: Capture) -> Scene:
+    """The scene that a capture was recorded in: its objects, and where the performer stood.
 
     Raises:
         PlanError: An object has no shape, or there is no sensor of the head.
     """
-    place, heading = _stance(human, _eyes(capture))
+    place, heading = _stance(Human.of(measures_of(capture.agent)), _eyes(capture))
     objects = [each for each in capture.objects if each.tag is not TagType.SELF]
     things = {each.name: _thing(each, _path(each.stream))[0] for each in objects}
     return Scene(things, place, heading)
-
-
-def eyes_in_body(human: Human) -> Float[np.ndarray, "3"]:
-    """Between the eyes of the standing body, from the place where it stands [m]."""
-    return np.asarray(eyes_between(human.measures))
 
 
 def moves(path: RigidTransform) -> bool:
@@ -386,7 +361,7 @@ def _stance(human: Human, eyes: RigidTransform) -> tuple[tuple[float, float], fl
     spot = np.median(eyes.translation[:START_FRAMES], axis=0)
     ahead = eyes.rotation[0].apply([1.0, 0.0, 0.0])
     heading = float(np.arctan2(ahead[1], ahead[0]))
-    local = eyes_in_body(human)
+    local = eyes_between(human.measures)
     x = float(spot[0] - np.cos(heading) * local[0])
     y = float(spot[1] - np.sin(heading) * local[0])
     return (x, y), heading
@@ -410,52 +385,30 @@ def _thing(each: TagObject, path: RigidTransform) -> tuple[Thing, RigidTransform
     return made, path * RigidTransform.from_rotation(tilt.inv())
 
 
-def _touched(
-    sensor: Sensor,
-    touching: list[Touching],
-    paths: Mapping[str, RigidTransform],
-    things: Mapping[str, Thing],
-) -> list[tuple[int, np.ndarray, np.ndarray]]:
-    """The frames in the middle of a hand's contacts, and the surface of what it touches there.
-
-    Points on it and their outward normals, in the world.
-    """
-    out = []
-    for each in touching:
-        if each.body == sensor.name and each.other in things:
-            frame = (each.first + each.last) // 2
-            points, normals = surface_samples(things[each.other].shape)
-            pose = paths[each.other][frame]
-            out.append((frame, pose.apply(points), pose.rotation.apply(normals)))
-    return out
-
-
-def _hand(
-    sensor: Sensor,
+def _hand_axes(
+    shape: Shape,
     path: RigidTransform,
     shoulder: Float[np.ndarray, "3"],
-    near: list[tuple[int, np.ndarray, np.ndarray]],
-    axes: HandAxes | None,
-) -> HandTrack:
-    if sensor.shape is None:
-        raise PlanError(f"sensor {sensor.name!r} has no shape of the hand; give it a mesh or a box")
-    if axes is not None:
-        own = stated_hand_frame(sensor.shape, axes)
-        return HandTrack(sensor.name, sensor.side, own, path * own.pose)
-    middle = 0.5 * sensor.shape.bounds.sum(axis=0)
-    outwards = path.apply(middle) - shoulder
-    fingers = path.rotation.inv().apply(outwards).mean(axis=0)
+    near: list[Touching],
+    things: Mapping[str, Thing],
+    paths: Mapping[str, RigidTransform],
+) -> HandAxes:
+    """Roughly to where fingers point, off the shoulder, and the palm faces, to what it touches."""
+    middle = 0.5 * shape.bounds.sum(axis=0)
+    fingers = path.rotation.inv().apply(path.apply(middle) - shoulder).mean(axis=0)
     palm = np.zeros(3)
-    for frame, points, normals in near:
+    for contact in near:
         # Against the surface, not towards it: a recorded hand may be inside of what it holds.
-        apart = np.linalg.norm(points - path[frame].apply(middle), axis=1)
-        facing = -normals[apart < apart.min() + FACED_M].mean(axis=0)
+        frame = (contact.first + contact.last) // 2
+        points, normals = surface_samples(things[contact.other].shape)
+        pose = paths[contact.other][frame]
+        apart = np.linalg.norm(pose.apply(points) - path[frame].apply(middle), axis=1)
+        facing = -pose.rotation.apply(normals)[apart < apart.min() + FACED_M].mean(axis=0)
         palm = palm + path[frame].rotation.inv().apply(facing)
     if not near:  # a hand that touches nothing hangs with its palm to the body
         here = path[0].apply(middle)
         palm = path.rotation[0].inv().apply([shoulder[0] - here[0], shoulder[1] - here[1], 0.0])
-    own = hand_frame(sensor.shape, fingers, palm)
-    return HandTrack(sensor.name, sensor.side, own, path * own.pose)
+    return fingers, palm
 
 
 def _entered(
@@ -477,19 +430,40 @@ def _entered(
     )
 
 
-def _check_stands(source: Source) -> None:
-    """Nobody walks: what reaches further than a bent body is a step."""
-    spots = source.eyes.translation[:, :2]
+def check_source(source: Source) -> None:
+    """Whoever performs stands, and whatever moves is in a hand or was set going by one.
+
+    Raises:
+        PlanError: The performer walks, or something moves that no hand holds or set going.
+    """
+    spots, times = source.eyes.translation[:, :2], source.times
     apart = np.linalg.norm(spots - spots[0], axis=1)
-    if apart.max() <= WALKS_M:
-        return
-    first, last = _longest_stand(spots)
-    raise PlanError(
-        f"the performer walks: the head is {apart.max():.2f} m aside at "
-        f"{source.times[int(apart.argmax())]:.2f} s, and feet keep their place when an action is "
-        f"performed again; it stays within {STANDS_M:g} m from {source.times[first]:.2f} to "
-        f"{source.times[last]:.2f} s: state from_s and to_s of such a part with --assume FILE"
-    )
+    if apart.max() > WALKS_M:
+        first, last = _longest_stand(spots)
+        raise PlanError(
+            f"the performer walks: the head is {apart.max():.2f} m aside at "
+            f"{times[int(apart.argmax())]:.2f} s, and feet keep their place when an action is "
+            f"performed again; it stays within {STANDS_M:g} m from {times[first]:.2f} to "
+            f"{times[last]:.2f} s: state from_s and to_s of such a part with --assume FILE"
+        )
+    for name, path in source.paths.items():
+        held = np.zeros(len(times), dtype=bool)
+        for carried in source.carried:
+            if carried.thing == name:
+                held[carried.first : carried.last + 1] = True
+        for release in source.releases:
+            if release.thing == name:
+                held[max(release.frame - LAUNCH_FRAMES, 0) :] = True
+        moved = np.linalg.norm(path.translation - path.translation[0], axis=1)
+        for first, last in runs(~held):
+            far_m = float(np.ptp(moved[first : last + 1]))
+            if far_m > MOVES_M:
+                raise PlanError(
+                    f"{name!r} moves by {1e3 * far_m:.0f} mm from {times[first]:.2f} to "
+                    f"{times[last]:.2f} s without a steady grip, and no hand was seen to set it "
+                    "going; end the recording before, or begin it after, with to_s and from_s in "
+                    "a file given with --assume FILE"
+                )
 
 
 def _longest_stand(spots: Float[np.ndarray, "frames 2"]) -> tuple[int, int]:
@@ -500,25 +474,3 @@ def _longest_stand(spots: Float[np.ndarray, "frames 2"]) -> tuple[int, int]:
             first += 1
         best = max(best, (first, last), key=lambda span: span[1] - span[0])
     return best
-
-
-def _check_movers(source: Source, touching: list[Touching]) -> None:
-    """Whatever moves does so in a hand, or on its own after a hand set it going."""
-    for name, path in source.paths.items():
-        held = np.zeros(len(source.times), dtype=bool)
-        for carried in source.carried:
-            if carried.thing == name:
-                held[carried.first : carried.last + 1] = True
-        for launch in source.releases:
-            if launch.thing == name:
-                held[max(launch.frame - LAUNCH_FRAMES, 0) :] = True
-        moved = np.linalg.norm(path.translation - path.translation[0], axis=1)
-        for first, last in runs(~held):
-            far_m = float(np.ptp(moved[first : last + 1]))
-            if far_m > MOVES_M:
-                raise PlanError(
-                    f"{name!r} moves by {1e3 * far_m:.0f} mm from {source.times[first]:.2f} to "
-                    f"{source.times[last]:.2f} s without a steady grip, and no hand was seen to "
-                    "set it going; end the recording before, or begin it after, with to_s and "
-                    "from_s in a file given with --assume FILE"
-                )

@@ -15,10 +15,21 @@ from capar.body.human import Human
 from capar.body.inverse_kinematics import Solver as Steps
 from capar.body.inverse_kinematics import support
 from capar.body.scripts import SIDES, minimum_jerk
+from capar.model.geometry import runs
 from capar.regeneration.collisions import NEAR_M, Pair, Surroundings
-from capar.regeneration.planning import beside, check_stance, is_possible, why_unreachable
-from capar.regeneration.quality import Gate, Quality, failures, is_hand, joint_gates
+from capar.regeneration.quality import (
+    NONE,
+    Gate,
+    Quality,
+    distance_gate,
+    failures,
+    is_hand,
+    joint_gates,
+    within,
+    worst_of,
+)
 from capar.regeneration.scenes import PlanError, Scene
+from capar.regeneration.search import beside, check_stance, is_possible, why_unreachable
 from capar.regeneration.solving import DAMPING_COST, FrameLimit, vectors
 from capar.regeneration.solving import Solver as Standing
 from capar.regeneration.sources import Source
@@ -80,42 +91,30 @@ class Stepping:
     bears: dict[str, Bool[np.ndarray, "frames"]]
     """By side, whether a foot bears weight."""
 
-    @property
-    def after(self) -> Scene:
-        """The scene with the performer standing there, to stay."""
-        return replace(self.scene, place=self.goal, stays=True)
+
+def _count(human: Human, far_m: float) -> int:
+    """How many steps of each foot, at most ``STRIDE`` long, lead so far."""
+    return max(int(np.ceil(far_m / (STRIDE * human.measures["stature"]) - 1e-9)), 1)
 
 
-def strides_to(human: Human, scene: Scene, goal: Place) -> tuple[Stride, ...]:
-    """The fewest steps of at most ``STRIDE`` straight there [m]; each foot comes beside the other.
+def step_to(human: Human, scene: Scene, goal: Place, *, rate_hz: float = 30.0) -> Stepping:
+    """Step straight to another place [m] in the fewest steps, facing the same way.
 
-    The foot on the side to which it goes steps first, else the right one.
+    Each foot comes beside the other; the one on the side to which it goes steps first, else the
+    right one.
     """
     x, y = np.asarray(goal) - scene.place
     count = _count(human, float(np.hypot(x, y)))
     left = -np.sin(scene.heading) * x + np.cos(scene.heading) * y
     order = ("left", "right") if left > 1e-6 else ("right", "left")
-    return tuple(Stride(side, (x / count, y / count)) for _ in range(count) for side in order)
-
-
-def _count(human: Human, far_m: float) -> int:
-    """How many steps of each foot lead so far."""
-    return max(int(np.ceil(far_m / (STRIDE * human.measures["stature"]) - 1e-9)), 1)
-
-
-def step_to(human: Human, scene: Scene, goal: Place, *, rate_hz: float = 30.0) -> Stepping:
-    """Step straight to another place [m], facing the same way."""
-    strides = strides_to(human, scene, goal)
+    strides = tuple(Stride(side, (x / count, y / count)) for _ in range(count) for side in order)
     body = _Stepper(human, scene, 1.0 / rate_hz)
-    for _ in range(round(STAND_S * rate_hz)):
-        body.frame()
+    body.shift(body.spot, STAND_S)
     for stride in strides:
-        other = SIDES[1 - SIDES.index(stride.side)]
-        body.shift(body.over(other), SHIFT_S)
+        body.shift(body.over(SIDES[1 - SIDES.index(stride.side)]), SHIFT_S)
         body.swing(stride, SWING_S)
     body.shift(np.asarray(goal) + body.ahead, SHIFT_S)
-    for _ in range(round(STAND_S * rate_hz)):
-        body.frame()
+    body.shift(body.spot, STAND_S)
     times = np.arange(len(body.postures)) / rate_hz
     bears = {side: np.array(rows) for side, rows in body.bears.items()}
     return Stepping(human, scene, goal, strides, times, np.array(body.postures), bears)
@@ -131,12 +130,18 @@ class _Stepper:
         self.feet = {s: mink.FrameTask(f"{s}_foot", "body", FOOT_COST, FOOT_COST) for s in SIDES}
         self.mass = mink.ComTask(cost=[MASS_COST, MASS_COST, 0.0])
         pelvis = mink.FrameTask("pelvis", "body", 0.0, UPRIGHT_COST)
-        ease = mink.PostureTask(human.model, cost=_ease_costs(human))
+        legs, others = EASE_COSTS
+        own = [legs if any(part in joint for part in LEGS) else others for joint in human.joints]
+        ease = mink.PostureTask(human.model, cost=np.array([*np.zeros(6), *own]))
         ease.set_target(standing.rest)
         for frame in (*self.feet.values(), pelvis):
             frame.set_target_from_configuration(self.configuration)
         self.mass.set_target_from_configuration(self.configuration)
-        self.poses = {side: self._foot(side) for side in SIDES}
+        self.poses = {}
+        for side in SIDES:
+            foot = self.configuration.get_transform_frame_to_world(f"{side}_foot", "body")
+            turn = Rotation.from_quat(foot.rotation().wxyz, scalar_first=True)
+            self.poses[side] = RigidTransform.from_components(foot.translation(), turn)
         self.spot = np.array(self.configuration.data.subtree_com[1, :2])
         self.ahead = self.spot - scene.place
         """Where the centre of mass is from the middle of a standing place [m]."""
@@ -173,9 +178,7 @@ class _Stepper:
     def frame(self, swings: str = "") -> None:
         """Go on to one frame, a foot being in the air."""
         for side, task in self.feet.items():
-            pose = self.poses[side]
-            turn = pose.rotation.as_quat(scalar_first=True)
-            task.set_target(mink.SE3(np.concatenate([turn, pose.translation])))
+            task.set_target(mink.SE3(vectors(self.poses[side])))
         self.mass.set_target(np.array([*self.spot, 0.0]))
         self.limit.begin()
         self.steps.restart()
@@ -187,18 +190,6 @@ class _Stepper:
         for side in SIDES:
             self.bears[side].append(side != swings)
 
-    def _foot(self, side: str) -> RigidTransform:
-        pose = self.configuration.get_transform_frame_to_world(f"{side}_foot", "body")
-        turn = Rotation.from_quat(pose.rotation().wxyz, scalar_first=True)
-        return RigidTransform.from_components(pose.translation(), turn)
-
-
-def _ease_costs(human: Human) -> Float[np.ndarray, "dofs"]:
-    """The legs step, and all above them stays as it is at ease."""
-    legs, others = EASE_COSTS
-    own = [legs if any(part in joint for part in LEGS) else others for joint in human.joints]
-    return np.array([*np.zeros(6), *own])
-
 
 INSIDE_MM = 10.0
 """How far inside the soles that bear it the centre of mass stays [mm]."""
@@ -206,84 +197,55 @@ INSIDE_MM = 10.0
 
 def stepping_quality(made: Stepping) -> Quality:
     """Verify steps at every frame."""
-    feet = _feet(made)
+    model = made.human.model
+    data, inside = mujoco.MjData(model), []
+    feet = {}
+    for name, (spots, turns) in made.human.sites(
+        made.postures, [f"{side}_foot" for side in SIDES]
+    ).items():
+        turn = Rotation.from_quat(turns, scalar_first=True)
+        feet[name.removesuffix("_foot")] = RigidTransform.from_components(spots, turn)
+    slid, missed, last = [NONE], [NONE], len(made.times) - 1
+    for side, path in feet.items():
+        spots = path.translation
+        for first, end in runs(made.bears[side]):
+            off = np.linalg.norm(spots[first : end + 1] - spots[first], axis=1)
+            slid.append(worst_of(off, f"{side}_foot", first))
+        gone = spots[-1] - spots[0] - [*(np.asarray(made.goal) - made.scene.place), 0.0]
+        missed.append((float(np.linalg.norm(gone)), last, f"{side}_foot"))
+    for frame, posture in enumerate(made.postures):
+        data.qpos[:] = posture
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        soles = {side: path[frame] for side, path in feet.items() if made.bears[side][frame]}
+        inside.append(-float(support(made.human, soles).outside(data.subtree_com[1, :2])))
+    worst = int(np.argmin(inside))
+    rate_hz = 1.0 / float(made.times[1] - made.times[0])
     return Quality(
         (
-            *_foot_gates(made, feet),
+            within("foot that bears", max(slid), 3.0),
+            within("foot comes there", max(missed), 3.0),
+            Gate("balance", 1e3 * inside[worst], INSIDE_MM, "mm", True, worst),
             *_contact_gates(made),
-            *joint_gates(made.human, made.postures, 1.0 / float(made.times[1] - made.times[0])),
+            *joint_gates(made.human, made.postures, rate_hz),
         )
     )
 
 
-def _feet(made: Stepping) -> dict[str, RigidTransform]:
-    sites = made.human.sites(made.postures, [f"{side}_foot" for side in SIDES])
-    return {
-        side: RigidTransform.from_components(
-            sites[f"{side}_foot"][0],
-            Rotation.from_quat(sites[f"{side}_foot"][1], scalar_first=True),
-        )
-        for side in SIDES
-    }
-
-
-def _foot_gates(made: Stepping, feet: dict[str, RigidTransform]) -> Iterator[Gate]:
-    slid, missed = (0.0, -1, ""), (0.0, -1, "")
-    for side, path in feet.items():
-        still = made.bears[side]
-        first = 0
-        for frame in range(len(still)):
-            if not still[frame]:
-                first = frame + 1
-            elif frame > first:
-                by = float(np.linalg.norm(path[frame].translation - path[first].translation))
-                slid = max(slid, (by, frame, f"{side}_foot"))
-        gone = path[-1].translation - path[0].translation
-        off = float(np.linalg.norm(gone - [*(np.asarray(made.goal) - made.scene.place), 0.0]))
-        missed = max(missed, (off, len(still) - 1, f"{side}_foot"))
-    yield Gate("foot that bears", 1e3 * slid[0], 3.0, "mm", False, *slid[1:])
-    yield Gate("foot comes there", 1e3 * missed[0], 3.0, "mm", False, *missed[1:])
-    masses = _masses(made)
-    inside = [
-        -float(
-            support(made.human, {s: feet[s][frame] for s in SIDES if made.bears[s][frame]}).outside(
-                masses[frame]
-            )
-        )
-        for frame in range(len(masses))
-    ]
-    worst = int(np.argmin(inside))
-    yield Gate("balance", 1e3 * inside[worst], INSIDE_MM, "mm", True, worst)
-
-
-def _masses(made: Stepping) -> Float[np.ndarray, "frames 2"]:
-    """Where the centre of mass is [m]."""
-    model = made.human.model
-    data, out = mujoco.MjData(model), []
-    for posture in made.postures:
-        data.qpos[:] = posture
-        mujoco.mj_kinematics(model, data)
-        mujoco.mj_comPos(model, data)
-        out.append(np.array(data.subtree_com[1, :2]))
-    return np.array(out)
-
-
-def _contact_gates(made: Stepping) -> Iterator[Gate]:
+def _contact_gates(made: Stepping) -> list[Gate]:
     """Penetration of anything, and how far hands keep from what they do not touch."""
     around = Surroundings(made.human, made.scene)
     things = {name: vectors(thing.pose) for name, thing in made.scene.things.items()}
-    deepest = nearest = (Pair(NEAR_M, "", ""), -1)
+    near: list[tuple[Pair, int]] = []
     for frame, posture in enumerate(made.postures):
         around.place(posture, things)
-        for pair in around.near():
-            deepest = min(deepest, (pair, frame))
-            if is_hand(pair.part):
-                nearest = min(nearest, (pair, frame))
-    for name, limit, (pair, frame) in (
-        ("penetration", -1.0, deepest), ("free hand clear", 10.0, nearest),
-    ):  # fmt: skip
-        bodies = f"{pair.part}, {pair.thing}" if pair.part else ""
-        yield Gate(name, 1e3 * pair.distance_m, limit, "mm", True, frame, bodies)
+        near += [(pair, frame) for pair in around.near()]
+    far = (Pair(NEAR_M, "", ""), -1)
+    hands = [found for found in near if is_hand(found[0].part)]
+    return [
+        distance_gate("penetration", -1.0, min([far, *near])),
+        distance_gate("free hand clear", 10.0, min([far, *hands])),
+    ]
 
 
 GRID_M = 0.1
@@ -344,37 +306,27 @@ def approached(
         return None, *act(replace(scene, stays=True))
     tried: list[str] = []
     for ahead_m, aside_m in _places(source, human, scene):
-        found = _tried(source, human, scene, beside(scene, ahead_m, aside_m), act)
-        if not isinstance(found, str):
-            made, quality, walked, gates = found
-            approach = Approach(why, walked, gates, ahead_m, aside_m, tuple(tried))
-            return approach, made, quality
-        tried.append(f"{ahead_m:+.1f} m ahead and {aside_m:+.1f} m to the left: {found}")
+        there = replace(beside(scene, ahead_m, aside_m), stays=True)
+        failed = "out of reach"
+        if is_possible(source, there, human):
+            walked = step_to(human, scene, there.place, rate_hz=source.rate_hz)
+            gates = stepping_quality(walked)
+            failed = f"the steps there fail {failures(gates)}"
+            if gates.passed:
+                try:
+                    made, quality = act(there)
+                except PlanError as error:
+                    failed = str(error)
+                else:
+                    if quality.passed:
+                        found = Approach(why, walked, gates, ahead_m, aside_m, tuple(tried))
+                        return found, made, quality
+                    failed = f"it fails {failures(quality)}"
+        tried.append(f"{ahead_m:+.1f} m ahead and {aside_m:+.1f} m to the left: {failed}")
     if not tried:
         raise PlanError(f"{why}; no step helps, since nothing nearer is free or it is too high")
     some = "; ".join(tried[:MOST_NAMED]) + ("; and so on" if len(tried) > MOST_NAMED else "")
     raise PlanError(f"{why}; no step helps of {len(tried)} places that were tried ({some})")
-
-
-def _tried(
-    source: Source,
-    human: Human,
-    scene: Scene,
-    there: Scene,
-    act: Callable[[Scene], tuple[Made, Quality]],
-) -> tuple[Made, Quality, Stepping, Quality] | str:
-    """Steps to a place and the action there, or why that is not possible."""
-    if not is_possible(source, replace(there, stays=True), human):
-        return "out of reach"
-    walked = step_to(human, scene, there.place, rate_hz=source.rate_hz)
-    gates = stepping_quality(walked)
-    if not gates.passed:
-        return f"the steps there fail {failures(gates)}"
-    try:
-        made, quality = act(walked.after)
-    except PlanError as error:
-        return str(error)
-    return (made, quality, walked, gates) if quality.passed else f"it fails {failures(quality)}"
 
 
 def _places(source: Source, human: Human, scene: Scene) -> Iterator[tuple[float, float]]:
@@ -386,7 +338,14 @@ def _places(source: Source, human: Human, scene: Scene) -> Iterator[tuple[float,
     around = Surroundings(human, scene)
     posture = Standing(human, (*scene.place, scene.floor_m), scene.heading).rest
     poses = {name: thing.pose for name, thing in scene.things.items()}
-    wish, tries = _wish(source, human, scene), Counter[int]()
+    names = [hold.thing for hold in source.holds]
+    old, new = (
+        np.mean([one.thing(name).place for name in names], axis=0)[:2]
+        for one in (source.scene, scene)
+    )
+    away = (old - source.scene.place) * human.measures["stature"] / source.human.measures["stature"]
+    turn = Rotation.from_euler("z", scene.heading - source.scene.heading)
+    wish, tries = new - turn.apply([*away, 0.0])[:2], Counter[int]()
     rows = []
     for spot in ((GRID_M * ahead, GRID_M * aside) for ahead in AHEAD for aside in ASIDE):
         place = beside(scene, *spot).place
@@ -419,15 +378,3 @@ def _beyond(source: Source, human: Human, scene: Scene) -> str:
         if high_m > HIGHEST * tall:
             return f"{name!r} is {high_m:.1f} m above the floor, higher than any posture reaches"
     return ""
-
-
-def _wish(source: Source, human: Human, scene: Scene) -> Float[np.ndarray, "2"]:
-    """Where the performer would stand by the objects as the recorded one did, by stature [m]."""
-    names = [hold.thing for hold in source.holds]
-    old, new = (
-        np.mean([one.thing(name).place for name in names], axis=0)[:2]
-        for one in (source.scene, scene)
-    )
-    turn = scene.heading - source.scene.heading
-    away = (old - source.scene.place) * human.measures["stature"] / source.human.measures["stature"]
-    return np.asarray(new - Rotation.from_euler("z", turn).apply([*away, 0.0])[:2])

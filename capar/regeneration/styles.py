@@ -1,6 +1,7 @@
 """Styles: what of a recorded path and its timing is kept between a new start and a new goal."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -75,14 +76,18 @@ def borrowed_style(source: Source, other: Source, kind: Kind = Kind.PATH) -> Sty
     Raises:
         PlanError: Other hands do something, or in another order.
     """
-    one, two = _steps(source), _steps(other)
+    moved, theirs = (list(dict.fromkeys(h.thing for h in one.holds)) for one in (source, other))
+    one, two = _steps(source, moved), _steps(other, theirs)
     if one != two:
+        told = [
+            ", ".join(f"{verb} {who}" for verb, who, _ in way) or "nothing" for way in (two, one)
+        ]
         raise PlanError(
             f"{other.capture.name!r} has another order of events, whose style cannot be borrowed: "
-            f"{_told(two)} instead of {_told(one)}"
+            f"{told[0]} instead of {told[1]}"
         )
     frames = np.interp(np.arange(len(source.times)), _events(source), _events(other))
-    names = dict(zip(_moved(source), _moved(other), strict=True))
+    names = dict(zip(moved, theirs, strict=True))
     hands = {side: _at(other.hands[side].path, frames) for side in source.hands}
     things = {n: _at(other.paths[names[n]], frames) for n in source.paths if n in names}
     return Style(kind, hands, {**source.paths, **things}, other.capture.agent.name)
@@ -110,32 +115,18 @@ def _spans(source: Source) -> list[Hold | Meeting]:
     return [*source.holds, *source.meetings]
 
 
-def _steps(source: Source) -> list[tuple[str, ...]]:
+def _steps(source: Source, moved: list[str]) -> list[tuple[str, str, int]]:
     """What holds and meetings there are, in order, whatever the objects are called."""
-    order = _moved(source)
-    holds = [(h.first, "hold", h.side, str(_number(order, h.thing))) for h in source.holds]
-    meetings = [(m.first, "meet", m.part, str(_number(order, m.thing))) for m in source.meetings]
-    return [tuple(event[1:]) for event in sorted([*holds, *meetings])]
-
-
-def _moved(source: Source) -> list[str]:
-    """Names of held objects in the order in which they are taken."""
-    return list(dict.fromkeys(hold.thing for hold in source.holds))
-
-
-def _number(order: list[str], thing: str) -> int:
-    return order.index(thing) if thing in order else -1
+    order = {name: number for number, name in enumerate(moved)}
+    events = [(h.first, "holds", h.side, order[h.thing]) for h in source.holds]
+    events += [(m.first, "meets", m.part, order.get(m.thing, -1)) for m in source.meetings]
+    return [event[1:] for event in sorted(events)]
 
 
 def _events(source: Source) -> Float[np.ndarray, "events"]:
     """Frames at which holds and meetings begin and end, the capture's ends included."""
-    spans = _spans(source)
-    edges = {0, len(source.times) - 1} | {e for s in spans for e in (s.first, s.last)}
+    edges = {0, len(source.times) - 1} | {e for s in _spans(source) for e in (s.first, s.last)}
     return np.array(sorted(edges), dtype=float)
-
-
-def _told(steps: list[tuple[str, ...]]) -> str:
-    return ", ".join(f"{verb}s {who}" for verb, who, _ in steps) or "nothing"
 
 
 def _at(path: RigidTransform, frames: Float[np.ndarray, "frames"]) -> RigidTransform:
@@ -144,6 +135,16 @@ def _at(path: RigidTransform, frames: Float[np.ndarray, "frames"]) -> RigidTrans
     spots = np.stack([np.interp(frames, known, c) for c in path.translation.T], axis=1)
     turns: Rotation = Slerp(known, path.rotation)(frames)
     return RigidTransform.from_components(spots, turns)
+
+
+def smoothed(
+    spots: Float[np.ndarray, "frames columns"], half: int
+) -> Float[np.ndarray, "frames columns"]:
+    """Weighted means over a bell of so many frames on both sides; the ends go on as they are."""
+    window = np.hanning(2 * half + 3)[1:-1]
+    padded = np.pad(spots, ((half, half), (0, 0)), mode="edge")
+    columns = [np.convolve(c, window / window.sum(), mode="valid") for c in padded.T]
+    return np.stack(columns, axis=1)
 
 
 SHORTEST_M = 0.02
@@ -157,21 +158,10 @@ class CoordinateError(PlanError):
     """Two points that do not span a frame."""
 
 
-@dataclass(frozen=True, eq=False)
-class SpanFrame:
-    """A frame from an object to a hand or shoulder, with the distance as its unit."""
-
-    origin: Float[np.ndarray, "3"]
-    """The object [m]."""
-
-    axes: Float[np.ndarray, "3 3"]
-    """Columns x, y and z in the world; z leads from the object to the hand or shoulder.
-
-    Left-handed, as the paper's equation has it; from one frame into another nothing is mirrored.
-    """
-
-    length_m: float
-    """Between the two [m]."""
+SpanFrame = tuple[np.ndarray, np.ndarray]
+"""The object's place [m], and in columns the axes x, y and z in the world, each as long as the
+distance from the object to the hand or shoulder, to which z leads [m]. Left-handed, as the paper's
+equation has it; from one frame into another nothing is mirrored."""
 
 
 def frame_between(
@@ -190,26 +180,26 @@ def frame_between(
     Raises:
         CoordinateError: The points are too near, or above each other without an ``aside``.
     """
-    way = np.asarray(base) - np.asarray(goal)
-    length = float(np.linalg.norm(way))
+    length = float(np.linalg.norm(base - goal))
     if length < SHORTEST_M:
         raise CoordinateError(f"object and hand are {1e3 * length:.0f} mm apart: no direction")
-    z = way / length
+    z = (base - goal) / length
     x = np.cross(z, [0.0, 0.0, 1.0])
     if np.linalg.norm(x) < UPRIGHT:
         if aside is None:
             raise CoordinateError("one is above the other, so that x has no direction; say which")
         x = aside - (aside @ z) * z
     x = x / np.linalg.norm(x)
-    return SpanFrame(np.asarray(goal), np.stack([x, np.cross(x, z), z], axis=1), length)
+    return goal, length * np.stack([x, np.cross(x, z), z], axis=1)
 
 
 def replayed(
     path: Float[np.ndarray, "frames 3"], before: SpanFrame, after: SpanFrame
 ) -> Float[np.ndarray, "frames 3"]:
     """A path turned and enlarged from one frame into another [m]."""
-    local = (path - before.origin) @ before.axes / before.length_m
-    return np.asarray(after.origin + after.length_m * local @ after.axes.T)
+    (old, axes), (new, new_axes) = before, after
+    local = (path - old) @ axes / np.sum(axes[:, 2] ** 2)
+    return np.asarray(new + local @ new_axes.T)
 
 
 SHORT_M = 0.05
@@ -217,10 +207,6 @@ SHORT_M = 0.05
 
 SMALLEST_M = 1e-6
 """Added to the path of every frame, so that time is a function of the path [m]."""
-
-
-NOWHERE = (np.zeros(3), np.zeros(3))
-"""No direction off anything, at either end."""
 
 PEAK = 256.0 / 27.0
 """Makes the largest value of s (1 - s)^3 one [1]."""
@@ -243,25 +229,6 @@ class Detour:
     def size(self) -> float:
         """How far it leads away from the path [m]."""
         return self.lift_m + self.back_m + self.off_m
-
-    def offset(
-        self,
-        shares: Float[np.ndarray, "frames"],
-        heading: float,
-        away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = NOWHERE,
-    ) -> Float[np.ndarray, "frames 3"]:
-        """The added displacement at shares of the path [m].
-
-        Args:
-            shares: Of the path [1].
-            heading: Which way the performer faces [rad].
-            away: Directions off what is left at the start and off what is reached at the goal.
-        """
-        back = self.back_m * np.array([-np.cos(heading), -np.sin(heading), 0.0])
-        bump = 4.0 * shares * (1.0 - shares)
-        out = np.outer(bump, back + np.array([0.0, 0.0, self.lift_m]))
-        left, right = PEAK * shares * (1.0 - shares) ** 3, PEAK * shares**3 * (1.0 - shares)
-        return np.asarray(out + self.off_m * (np.outer(left, away[0]) + np.outer(right, away[1])))
 
 
 STRAIGHT = Detour()
@@ -287,7 +254,7 @@ def mapped(
     turn: float = 0.0,
     detour: Detour = STRAIGHT,
     heading: float = 0.0,
-    away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = NOWHERE,
+    away: tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]] = (np.zeros(3), np.zeros(3)),
     kind: Kind = Kind.PATH,
 ) -> RigidTransform:
     """A path with other ends.
@@ -305,62 +272,47 @@ def mapped(
         away: Directions in which a detour draws off, at the start and at the goal.
         kind: What of the path is kept.
     """
-    old = path.translation
-    shares = arc_shares(old) if kind is not Kind.EVEN else minimum_jerk(len(path))
-    straight = kind in {Kind.VEL, Kind.EVEN}
-    along = shares if straight else _along(old, shares)
-    chord, new = old[-1] - old[0], goal.translation - start.translation
-    angle = _turn(chord, new, turn)
-    about = Rotation.from_euler("z", angle)
-    aside = about.apply(old - old[0] - np.outer(along, chord))
-    if straight:
-        aside = np.zeros_like(old)
-    elif kind is Kind.FRAME:
-        aside = _in_frames(old, start.translation, goal.translation, along, new, aside)
-    spots = start.translation + np.outer(along, new) + aside
-    spots = spots + detour.offset(shares, heading, away)
-    spots = retimed(spots, shares)
-    return RigidTransform.from_components(
-        spots, _turns(path.rotation, start.rotation, goal.rotation, shares, about)
-    )
+    old, chord = path.translation, path.translation[-1] - path.translation[0]
+    new = goal.translation - start.translation
+    shares = arc_shares(old) if kind is not Kind.EVEN else _minimum_jerk(len(path))
+    straight, length = kind in {Kind.VEL, Kind.EVEN}, float(np.linalg.norm(chord))
+    # How far along the straight path each frame is; by the path's length where that is short.
+    by_length = straight or length <= SHORT_M
+    along = shares if by_length else (old - old[0]) @ chord / length**2
+    if min(np.hypot(*chord[:2]), np.hypot(*new[:2])) >= SHORT_M:
+        turn = float(np.arctan2(new[1], new[0]) - np.arctan2(chord[1], chord[0]))
+    about = Rotation.from_euler("z", turn)
+    spots = start.translation + np.outer(along, new)
+    if not straight:
+        aside = about.apply(old - old[0] - np.outer(along, chord))
+        if kind is Kind.FRAME:
+            with suppress(CoordinateError):
+                before = frame_between(old[-1], old[0])
+                after = frame_between(goal.translation, start.translation)
+                aside = replayed(old, before, after) - spots
+        spots = spots + aside
+    back = detour.back_m * np.array([-np.cos(heading), -np.sin(heading), 0.0])
+    bump = 4.0 * shares * (1.0 - shares)
+    leaves, comes = PEAK * shares * (1.0 - shares) ** 3, PEAK * shares**3 * (1.0 - shares)
+    spots = spots + np.outer(bump, back + np.array([0.0, 0.0, detour.lift_m]))
+    spots = spots + detour.off_m * (np.outer(leaves, away[0]) + np.outer(comes, away[1]))
+    # The recorded deviations from an even turn, on the even turn between the new ends.
+    first, last = path.rotation[0], path.rotation[-1]
+    deviation = path.rotation * _even(first, last, shares).inv()
+    even = _even(start.rotation, goal.rotation, shares)
+    turns = about * deviation * about.inv() * even
+    return RigidTransform.from_components(retimed(spots, shares), turns)
 
 
-def minimum_jerk(frames: int) -> Float[np.ndarray, "frames"]:
+def _minimum_jerk(frames: int) -> Float[np.ndarray, "frames"]:
     """Shares of the path with the least jerk (Flash & Hogan 1985) [1]."""
     s = np.linspace(0.0, 1.0, frames)
     return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s * s))
 
 
-def _in_frames(
-    old: Float[np.ndarray, "frames 3"],
-    start: Float[np.ndarray, "3"],
-    goal: Float[np.ndarray, "3"],
-    along: Float[np.ndarray, "frames"],
-    new: Float[np.ndarray, "3"],
-    usual: Float[np.ndarray, "frames 3"],
-) -> Float[np.ndarray, "frames 3"]:
-    """What deviates from the straight path, in the frame of object and hand if there is one."""
-    try:
-        before, after = frame_between(old[-1], old[0]), frame_between(goal, start)
-    except CoordinateError:
-        return usual
-    return np.asarray(replayed(old, before, after) - start - np.outer(along, new))
-
-
-def _along(
-    old: Float[np.ndarray, "frames 3"], shares: Float[np.ndarray, "frames"]
-) -> Float[np.ndarray, "frames"]:
-    """How far along the straight path each frame is; by the path's length where that is short."""
-    chord = old[-1] - old[0]
-    length = float(np.linalg.norm(chord))
-    return np.asarray((old - old[0]) @ chord / length**2) if length > SHORT_M else shares
-
-
-def _turn(old: Float[np.ndarray, "3"], new: Float[np.ndarray, "3"], usual: float) -> float:
-    """How far the path has turned about z [rad]."""
-    if min(np.hypot(*old[:2]), np.hypot(*new[:2])) < SHORT_M:
-        return usual
-    return float(np.arctan2(new[1], new[0]) - np.arctan2(old[1], old[0]))
+def _even(first: Rotation, last: Rotation, shares: Float[np.ndarray, "frames"]) -> Rotation:
+    axis = (last * first.inv()).as_rotvec()
+    return Rotation.from_rotvec(np.outer(shares, axis)) * first
 
 
 def retimed(
@@ -374,20 +326,3 @@ def retimed(
     """
     covered = arc_shares(spots)
     return np.stack([np.interp(shares, covered, column) for column in spots.T], axis=1)
-
-
-def _turns(
-    old: Rotation,
-    first: Rotation,
-    last: Rotation,
-    shares: Float[np.ndarray, "frames"],
-    about: Rotation,
-) -> Rotation:
-    """The old deviations from an even turn, on the even turn between the new ends."""
-    deviation = old * _even(old[0], old[-1], shares).inv()
-    return about * deviation * about.inv() * _even(first, last, shares)
-
-
-def _even(first: Rotation, last: Rotation, shares: Float[np.ndarray, "frames"]) -> Rotation:
-    axis = (last * first.inv()).as_rotvec()
-    return Rotation.from_rotvec(np.outer(shares, axis)) * first

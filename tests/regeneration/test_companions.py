@@ -10,8 +10,8 @@ from capar.body.scripted_actions import action_capture
 from capar.pipelines.round_trips import body, observed_source, round_trip
 from capar.regeneration import PlanError, Source
 from capar.regeneration.holds import Hold, co_held_of
-from capar.regeneration.planning import reachable
 from capar.regeneration.scenes import drawn_scene, moved, raised, resized_with
+from capar.regeneration.search import reachable
 
 
 @cache

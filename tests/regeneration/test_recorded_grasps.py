@@ -20,11 +20,11 @@ from capar.regeneration.body_frames import body_frames, free_pose, rest_pose
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.goals import TOUCH_M, touching_shift
 from capar.regeneration.grips import Turn, drawn_turns
-from capar.regeneration.holds import INSTANTS, Hold, holds_of, with_touches, with_unseen_ends
+from capar.regeneration.holds import INSTANTS, Hold, holds_of, with_touches
 from capar.regeneration.planning import Draft
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import HandAxes, Source, source_of, stated_hand_frame
+from capar.regeneration.sources import Source, source_of, stated_hand_frame
 from capar.regeneration.styles import own_style
 
 RATE_HZ = 30.0
@@ -58,7 +58,7 @@ def test_a_palm_faces_what_it_touches_though_the_hand_was_recorded_inside(into_m
 
 def test_a_stated_palm_is_kept_whatever_shape_the_hand_has() -> None:
     source = _source("touch")
-    axes = HandAxes(fingers=np.array([1.0, 0.3, 0.0]), palm=np.array([0.0, 0.0, -2.0]))
+    axes = np.array([1.0, 0.3, 0.0]), np.array([0.0, 0.0, -2.0])
     stated = source_of(source.capture, source.observation, axes={"right": axes}).hands["right"]
     turn = stated.frame.pose.rotation.as_matrix()
     np.testing.assert_allclose(turn[:, 2], [0.0, 0.0, -1.0], atol=1e-12)
@@ -67,7 +67,7 @@ def test_a_stated_palm_is_kept_whatever_shape_the_hand_has() -> None:
     shape = source.capture.sensor("right_hand").shape
     assert shape is not None
     with pytest.raises(PlanError, match="along its own fingers"):
-        stated_hand_frame(shape, HandAxes(np.array([0.0, 0.1, 1.0]), np.array([0.0, 0.0, 1.0])))
+        stated_hand_frame(shape, (np.array([0.0, 0.1, 1.0]), np.array([0.0, 0.0, 1.0])))
 
 
 @pytest.mark.parametrize(
@@ -90,7 +90,7 @@ def _draft() -> Draft:
     return Draft(source, source.scene, source.human, own_style(source))
 
 
-@pytest.mark.parametrize("turn", list(drawn_turns())[::4])
+@pytest.mark.parametrize("turn", drawn_turns()[::4])
 def test_a_hand_that_is_drawn_back_still_touches(turn: Turn) -> None:
     draft = _draft()
     hold = draft.source.holds[0]
@@ -161,9 +161,9 @@ def test_a_hand_that_nobody_saw_come_holds_the_thing_from_the_first_frame(
     times = np.arange(90) / 30.0
     hands = {"right": ("right_hand", RigidTransform.from_translation(np.zeros((90, 3))))}
     touching = [Touching("right_hand", "box", first, 80)]
-    (hold,) = with_unseen_ends((Hold("right", "box", 20, 80),), hands, touching, times)
+    (hold,) = with_touches((Hold("right", "box", 20, 80),), hands, touching, [], times)
     assert (hold.first, hold.last) == held
-    (slow,) = with_unseen_ends((Hold("right", "box", 40, 80),), hands, touching, times)
+    (slow,) = with_touches((Hold("right", "box", 40, 80),), hands, touching, [], times)
     assert slow.first == 40
 
 

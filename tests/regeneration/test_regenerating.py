@@ -17,9 +17,10 @@ from capar.regeneration.body_frames import body_frames
 from capar.regeneration.direct_mapping import departures
 from capar.regeneration.motion import perform_plan
 from capar.regeneration.paths import Care
-from capar.regeneration.planning import led, reachable
+from capar.regeneration.planning import led
 from capar.regeneration.quality import quality
 from capar.regeneration.scenes import raised
+from capar.regeneration.search import reachable
 from capar.regeneration.sources import body_hand_frame
 
 pytestmark = pytest.mark.long

@@ -8,7 +8,7 @@ import pytest
 from capar.body.scripted_actions import action_capture
 from capar.pipelines.round_trips import body, numbered_scene, observed_source, round_trip
 from capar.regeneration import Source
-from capar.regeneration.planning import reachable
+from capar.regeneration.search import reachable
 
 pytestmark = pytest.mark.long
 

@@ -15,9 +15,9 @@ from capar.pipelines.round_trips import body, observed_source
 from capar.pipelines.trials import trial_of
 from capar.regeneration import PlanError, Source, regenerate, stepping
 from capar.regeneration.captures import capture_of_steps
-from capar.regeneration.planning import beside
 from capar.regeneration.quality import Quality
 from capar.regeneration.scenes import Scene, raised
+from capar.regeneration.search import beside
 from capar.regeneration.stepping import (
     RISE_M,
     STRIDE,
