@@ -137,147 +137,86 @@ class FlockLayout:
         return baud / BITS / (birds * self.size)
 
 
-@dataclass(frozen=True)
-class FlockSettings:
-    """Units, format, rate and lines of a flock.
+class FlockTracker(SerialTracker):
+    """A flock on one line, or on one line a bird.
 
     The place is a port, or several divided by commas: then each bird has its own, the first
     one's bird is the master, and records carry no address.
-    """
-
-    ports: tuple[str, ...]
-    names: tuple[str, ...]
-    form: BirdFormat
-    rate_hz: float
-    """Frames a second."""
-
-    every: int
-    """Every how many measuring cycles a frame is sent."""
-
-    baud: int
-    stream: bool
-    """Whether the flock sends of its own accord, or is polled."""
-
-    erc: bool
-    """Whether unit 1 is an extended-range controller, and the birds begin at 2."""
-
-    scaling: Scaling
-    hemisphere: str
-    line_frequency_hz: int
-    """Of the power supply; 0 leaves it as it is set."""
-
-    reset: bool
-    settle_s: float
-
-    @property
-    def addresses(self) -> tuple[int, ...]:
-        """The birds' addresses, in the order of the sensors."""
-        return tuple(range(1 + self.erc, 1 + self.erc + len(self.names)))
-
-    @property
-    def units(self) -> int:
-        """Units on the bus between the birds."""
-        return len(self.names) + self.erc
-
-    @property
-    def layout(self) -> FlockLayout:
-        """How records lie: with addresses where one line carries those of several units."""
-        return FlockLayout(self.form, len(self.ports) == 1 and self.units > 1)
-
-
-def flock_settings(address: Address) -> FlockSettings:
-    """The settings that an address holds.
-
-    Raises:
-        CaparError: An option is unknown or out of bounds, or a line cannot carry the rate.
-    """
-    ports = tuple(address.place.split(","))
-    birds = address.integer("birds", len(ports), low=1, high=13)
-    erc = address.flag("erc")
-    if len(ports) > 1 and birds != len(ports):
-        raise address.error(f"{len(ports)} ports for {birds} birds; give one port a bird, or one")
-    if len(ports) > 1 and erc:
-        raise address.error("with a port for each bird the master is the first one's; erc=no")
-    ranges = ("144",) if erc else ("36", "72")
-    inches = float(address.choice("range", ranges, ranges[0]))
-    conjugated = address.choice("quaternion", ("conjugated", "plain"), "conjugated")
-    rate_hz = address.number("rate", 30.0, low=0.1, high=MOST_HZ)
-    # as few reports a measurement as give the fastest measuring, unless the address says
-    usual = max(each for each in EVERY if each * rate_hz <= MOST_HZ)
-    every = int(address.choice("every", map(str, EVERY), str(usual)))
-    if every * rate_hz > MOST_HZ:
-        raise address.error(
-            f"rate={rate_hz:g} every {every} cycles is {every * rate_hz:g} measurements a second; "
-            f"the birds do {MOST_HZ:g}"
-        )
-    settings = FlockSettings(
-        ports=ports,
-        names=address.names(f"bird{1 + erc + index}" for index in range(birds)),
-        form=FORMATS[address.choice("format", FORMATS, "pos_quat")],
-        rate_hz=rate_hz,
-        every=every,
-        baud=int(address.choice("baud", map(str, BAUDS), "115200")),
-        stream=address.choice("mode", ("stream", "point"), "stream") == "stream",
-        erc=erc,
-        scaling=Scaling(inches, conjugated == "conjugated"),
-        hemisphere=address.choice("hemisphere", HEMISPHERES, "front"),
-        line_frequency_hz=int(address.choice("power", ("0", "50", "60"), "0")),
-        reset=address.flag("reset"),
-        settle_s=address.number("settle", SETTLE_S, low=0.0, high=10.0),
-    )
-    address.close()
-    on_line = birds if len(ports) == 1 else 1
-    limit_hz = settings.layout.limit_hz(on_line, settings.baud)
-    if rate_hz > limit_hz:
-        size = settings.layout.size
-        raise address.error(
-            f"rate={rate_hz:g} does not pass the line: {on_line} x {size} bytes a frame are "
-            f"{on_line * size * rate_hz:.0f} bytes a second, {settings.baud} baud carry "
-            f"{settings.baud / BITS:.0f}, so at most {limit_hz:.4g} Hz. Lower the rate, choose a "
-            "shorter format, give each bird a port of its own, or use a MotionStar's Ethernet."
-        )
-    return settings
-
-
-class FlockTracker(SerialTracker):
-    """A flock on one line, or on one line a bird.
 
     Args:
         address: Like ``flock:/dev/ttyUSB0?birds=12&format=pos_quat&rate=51.65``.
 
     Raises:
-        CaparError: The address holds what no flock can be set to.
+        CaparError: An option is unknown or out of bounds, or a line cannot carry the rate.
     """
 
     def __init__(self, address: Address) -> None:
-        self._settings = settings = flock_settings(address)
-        poll = b"" if settings.stream else bytes([POINT])
-        super().__init__(len(settings.names), settings.rate_hz, poll)
+        self._paths = paths = address.place.split(",")
+        birds = address.integer("birds", len(paths), low=1, high=13)
+        self._erc = erc = address.flag("erc")
+        if len(paths) > 1 and birds != len(paths):
+            problem = f"{len(paths)} ports for {birds} birds; give one port a bird, or one"
+            raise address.error(problem)
+        if len(paths) > 1 and erc:
+            raise address.error("with a port for each bird the master is the first one's; erc=no")
+        ranges = ("144",) if erc else ("36", "72")
+        inches = float(address.choice("range", ranges, ranges[0]))
+        conjugated = address.choice("quaternion", ("conjugated", "plain"), "conjugated")
+        rate_hz = address.number("rate", 30.0, low=0.1, high=MOST_HZ)
+        # as few reports a measurement as give the fastest measuring, unless the address says
+        usual = max(each for each in EVERY if each * rate_hz <= MOST_HZ)
+        self._every = every = int(address.choice("every", map(str, EVERY), str(usual)))
+        if every * rate_hz > MOST_HZ:
+            raise address.error(
+                f"rate={rate_hz:g} every {every} cycles is {every * rate_hz:g} measurements a "
+                f"second; the birds do {MOST_HZ:g}"
+            )
+        self._names = address.names(f"bird{1 + erc + index}" for index in range(birds))
+        self._form = FORMATS[address.choice("format", FORMATS, "pos_quat")]
+        self._baud = int(address.choice("baud", map(str, BAUDS), "115200"))
+        self._streams = address.choice("mode", ("stream", "point"), "stream") == "stream"
+        self._scaling = Scaling(inches, conjugated == "conjugated")
+        self._hemisphere = HEMISPHERES[address.choice("hemisphere", HEMISPHERES, "front")]
+        self._power_hz = int(address.choice("power", ("0", "50", "60"), "0"))
+        self._reset = address.flag("reset")
+        self._settle_s = address.number("settle", SETTLE_S, low=0.0, high=10.0)
+        address.close()
+        self._units = birds + erc
+        self._addresses = range(1 + erc, 1 + self._units)
+        self._layout = FlockLayout(self._form, len(paths) == 1 and self._units > 1)
+        on_line = birds if len(paths) == 1 else 1
+        limit_hz, size = self._layout.limit_hz(on_line, self._baud), self._layout.size
+        if rate_hz > limit_hz:
+            raise address.error(
+                f"rate={rate_hz:g} does not pass the line: {on_line} x {size} bytes a frame are "
+                f"{on_line * size * rate_hz:.0f} bytes a second, {self._baud} baud carry "
+                f"{self._baud / BITS:.0f}, so at most {limit_hz:.4g} Hz. Lower the rate, choose a "
+                "shorter format, give each bird a port, or use a MotionStar's Ethernet."
+            )
+        super().__init__(birds, rate_hz, b"" if self._streams else bytes([POINT]))
         self._details: dict[str, str] = {}
 
     def describe(self) -> Description:
         """What the flock is, and its sensors."""
-        settings = self._settings
         return Description(
             kind="flock",
             model=self._details.get("model", ""),
-            sensors=settings.names,
-            rate_hz=settings.rate_hz,
-            has_positions=settings.form.position,
-            has_orientations=bool(settings.form.orientation),
+            sensors=self._names,
+            rate_hz=self._hz,
+            has_positions=self._form.position,
+            has_orientations=bool(self._form.orientation),
             details=self._details,
         )
 
     def _connect(self) -> None:
-        settings, layout = self._settings, self._settings.layout
-        addresses = settings.addresses if layout.group else (0,)
+        addresses = self._addresses if self._layout.group else (0,)
         self._ports = [
-            SerialPort(path, settings.baud, layout, addresses, first)
-            for first, path in enumerate(settings.ports)
+            SerialPort(path, self._baud, self._layout, addresses, first)
+            for first, path in enumerate(self._paths)
         ]
         for port in self._ports:
             port.line.open()
-            if settings.reset and port.line.reset_device():
+            if self._reset and port.line.reset_device():
                 time.sleep(AFTER_RESET_S)
             self._quieten(port)
         firmware = self._ask(FIRMWARE)
@@ -285,14 +224,14 @@ class FlockTracker(SerialTracker):
         self._details = {"model": model, "firmware": f"{firmware[0]}.{firmware[1]}"}
         self._configure()
         self._begin()
-        if settings.stream:
+        if self._streams:
             for port in self._ports:
-                port.line.write(bytes([EVERY[settings.every], STREAM]))
+                port.line.write(bytes([EVERY[self._every], STREAM]))
 
     def _quieten(self, port: SerialPort) -> None:
         """End whatever a unit is sending."""
         port.line.write(bytes([POINT]))
-        time.sleep(self._settings.settle_s / 3.0)
+        time.sleep(self._settle_s / 3.0)
         port.line.drop_input()
 
     def _ask(self, parameter: int) -> bytes:
@@ -301,7 +240,7 @@ class FlockTracker(SerialTracker):
         for _ in range(ATTEMPTS):
             master.line.drop_input()
             master.line.write(bytes([EXAMINE, parameter]))
-            wait_s = REPLY_S + size * BITS / self._settings.baud
+            wait_s = REPLY_S + size * BITS / self._baud
             value = master.line.read_exactly(size, wait_s)
             if len(value) == size:
                 return value
@@ -312,46 +251,46 @@ class FlockTracker(SerialTracker):
 
     def _configure(self) -> None:
         """Set up every unit, and have the master find the others, again if some did not hear it."""
-        settings, master = self._settings, self._ports[0].line
-        hemisphere = bytes([HEMISPHERE]) + HEMISPHERES[settings.hemisphere]
-        for index, address in enumerate(settings.addresses):
+        master = self._ports[0].line
+        hemisphere = bytes([HEMISPHERE]) + self._hemisphere
+        for index, address in enumerate(self._addresses):
             line = self._ports[index % len(self._ports)].line
-            for command in (bytes([settings.form.command]), hemisphere):
-                line.write(bytes([PREFIX + address] * settings.layout.group) + command)
-        if not settings.erc:
+            for command in (bytes([self._form.command]), hemisphere):
+                line.write(bytes([PREFIX + address] * self._layout.group) + command)
+        if not self._erc:
             for port in self._ports:
-                port.line.write(change(SCALING, int(settings.scaling.range_inch > 36.0)))
-        measured_hz = settings.rate_hz * settings.every
+                port.line.write(change(SCALING, int(self._scaling.range_inch > 36.0)))
+        measured_hz = self._hz * self._every
         master.write(change(RATE, round(measured_hz * RATE_UNIT)))
-        if settings.line_frequency_hz:
-            master.write(change(LINE_FREQUENCY, settings.line_frequency_hz))
+        if self._power_hz:
+            master.write(change(LINE_FREQUENCY, self._power_hz))
         for attempt in range(1, CONFIGURATIONS + 1):
-            if settings.units > 1:  # the line stays idle before and after
-                time.sleep(settings.settle_s)
-                master.write(change(AUTO_CONFIG, settings.units))
-                time.sleep(settings.settle_s)
+            if self._units > 1:  # the line stays idle before and after
+                time.sleep(self._settle_s)
+                master.write(change(AUTO_CONFIG, self._units))
+                time.sleep(self._settle_s)
                 master.drop_input()
-            if settings.layout.group:
+            if self._layout.group:
                 master.write(change(GROUP_MODE, 1))
             try:
                 self._check()
             except DeviceLostError:
                 raise
             except DeviceError:
-                if attempt == CONFIGURATIONS or settings.units == 1:
+                if attempt == CONFIGURATIONS or self._units == 1:
                     raise
             else:
                 return
 
     def _check(self) -> None:
         """Check that all units run and none has an error."""
-        path, units = self._ports[0].path, self._settings.units
+        path, units = self._ports[0].path, self._units
         code = self._ask(ERROR)[0]
         if code:
             raise DeviceError(f"{path}: {error_text(code, self._ask(EXPANDED_ERROR)[0])}")
         status = self._ask(FLOCK_STATUS) if units > 1 else b""
         need = ACCESSIBLE | RUNNING
-        for address in self._settings.addresses if units > 1 else ():
+        for address in self._addresses if units > 1 else ():
             if status[address - 1] & need != need:
                 found = sum(bool(each & ACCESSIBLE) for each in status)
                 raise DeviceError(
@@ -366,7 +305,7 @@ class FlockTracker(SerialTracker):
                 port.line.write(bytes([SLEEP]))
 
     def _pose(self, values: Values) -> tuple[np.ndarray, np.ndarray] | None:
-        return pose_of_words(values, self._settings.form, self._settings.scaling)
+        return pose_of_words(values, self._form, self._scaling)
 
 
 MEASURED_HZ = 103.3  # Measuring cycles a second of a simulated flock until it is told otherwise.

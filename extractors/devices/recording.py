@@ -270,19 +270,15 @@ def _check(recording: Recording, folder: Path, mounts: Mapping[str, Mount]) -> N
 
 
 def _write_table(path: Path, recording: Recording, times: np.ndarray, kept: np.ndarray) -> None:
+    """The table of poses, in which a sensor that lacks a number is lost."""
     names = recording.description.sensors
-    lines = [",".join(["t_s", *(f"{name}_{part}" for name in names for part in PARTS)])]
-    for frame in kept:
-        cells = [f"{times[frame]:.6f}"]
-        for place, turned in zip(
-            recording.positions[frame], recording.orientations[frame], strict=True
-        ):
-            seen = bool(np.isfinite(place).all() and np.isfinite(turned).all())
-            cells += [f"{value:.6f}" if seen else "nan" for value in place]
-            cells += [f"{value:.7f}" if seen else "nan" for value in np.roll(turned, -1)]
-            cells.append(str(int(seen)))
-        lines.append(",".join(cells))
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    poses = np.concatenate([recording.positions, np.roll(recording.orientations, -1, axis=2)], 2)
+    seen = np.isfinite(poses).all(axis=2, keepdims=True)
+    rows = np.concatenate([np.where(seen, poses, np.nan), seen], axis=2).reshape(len(times), -1)
+    head = ",".join(["t_s", *(f"{name}_{part}" for name in names for part in PARTS)])
+    form = ["%.6f", *[*["%.6f"] * 3, *["%.7f"] * 4, "%d"] * len(names)]
+    table = np.column_stack([times, rows])[kept]
+    np.savetxt(path, table, fmt=form, delimiter=",", header=head, comments="")
 
 
 def _capture_toml(recording: Recording, name: str, mounts: Mapping[str, Mount], late: int) -> str:

@@ -1,7 +1,5 @@
 """The schema of a capture.toml: every table and key with its type, unit, meaning and default."""
 
-# ruff: noqa: RUF012  (pydantic copies the defaults of fields)
-
 from datetime import date
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -45,66 +43,60 @@ Quaternion = Annotated[
 class Pose(Entry):
     """A position and an orientation."""
 
-    position: Annotated[Vector, key("Position; zero if not given.", unit="m")] = [0.0, 0.0, 0.0]
-    orientation: Annotated[
-        Quaternion, key("Unit quaternion w x y z; no rotation if not given.")
-    ] = [1.0, 0.0, 0.0, 0.0]
+    position: Vector = key("Position; zero if not given.", [0.0, 0.0, 0.0], unit="m")
+    orientation: Quaternion = key(
+        "Unit quaternion w x y z; no rotation if not given.", [1.0, 0.0, 0.0, 0.0]
+    )
 
 
 class MeshShape(Pose):
     """A mesh file: STL, PLY, OBJ, OFF, GLB; or 3MF, DAE, X3D, glTF if trimesh can read them."""
 
-    mesh: Annotated[
-        str, key("The file, relative to the capture.toml; ${NAME} is an environment variable.")
-    ]
-    unit: Annotated[Unit, key("Unit of the mesh's coordinates.")] = "m"
-    handedness: Annotated[
-        Handedness | None,
-        key("Axes of the mesh; if not given, those of the motion file of its body."),
-    ] = None
+    mesh: str = key("The file, relative to the capture.toml; ${NAME} is an environment variable.")
+    unit: Unit = key("Unit of the mesh's coordinates.", "m")
+    handedness: Handedness | None = key(
+        "Axes of the mesh; if not given, those of the motion file of its body.", None
+    )
 
 
 class BoxShape(Pose):
     """A box about the origin of its own frame."""
 
-    box: Annotated[
-        Annotated[list[Size], Field(min_length=3, max_length=3)],
-        key("Lengths along x, y and z.", unit="m"),
-    ]
+    box: Annotated[list[Size], Field(min_length=3, max_length=3)] = key(
+        "Lengths along x, y and z.", unit="m"
+    )
 
 
 class MarkerBoxShape(Pose):
     """The smallest box along the body's axes that holds markers."""
 
-    box: Annotated[Literal["markers"], key("The word ``markers``.")]
-    around: Annotated[
-        list[str], key("Markers or bodies inside it; if not given, the body's own markers.")
-    ] = []
-    margin_m: Annotated[float, key("Added on every side.", unit="m")] = 0.0
+    box: Literal["markers"] = key("The word ``markers``.")
+    around: list[str] = key(
+        "Markers or bodies inside it; if not given, the body's own markers.", []
+    )
+    margin_m: float = key("Added on every side.", 0.0, unit="m")
 
 
 class CylinderShape(Pose):
     """A cylinder about the z axis of its own frame."""
 
-    cylinder: Annotated[
-        Annotated[list[Size], Field(min_length=2, max_length=2)],
-        key("Radius and height.", unit="m"),
-    ]
+    cylinder: Annotated[list[Size], Field(min_length=2, max_length=2)] = key(
+        "Radius and height.", unit="m"
+    )
 
 
 class SphereShape(Pose):
     """A sphere."""
 
-    sphere: Annotated[Size, key("Radius.", unit="m")]
+    sphere: Size = key("Radius.", unit="m")
 
 
 class CapsuleShape(Pose):
     """A cylinder with rounded ends, about the z axis of its own frame."""
 
-    capsule: Annotated[
-        Annotated[list[Size], Field(min_length=2, max_length=2)],
-        key("Radius, and distance between the centres of the two ends.", unit="m"),
-    ]
+    capsule: Annotated[list[Size], Field(min_length=2, max_length=2)] = key(
+        "Radius, and distance between the centres of the two ends.", unit="m"
+    )
 
 
 class CapsulesShape(Pose):
@@ -114,20 +106,19 @@ class CapsulesShape(Pose):
         Annotated[Literal["children", "descendants"], Tag("as text")]
         | Annotated[list[Pair], Field(min_length=1), Tag("as list")],
         Discriminator(form_of_value),
-        key(
-            "Pairs of names; or ``children``, from the body's joint to the next joints; or "
-            "``descendants``, along every bone below it."
-        ),
-    ]
-    radius_m: Annotated[Size, key("Radius of every capsule.", unit="m")]
+    ] = key(
+        "Pairs of names; or ``children``, from the body's joint to the next joints; or "
+        "``descendants``, along every bone below it."
+    )
+    radius_m: Size = key("Radius of every capsule.", unit="m")
 
 
 class PartsShape(Pose):
     """Several shapes as one; they may overlap."""
 
-    parts: Annotated[
-        list["AnyShape"], key("The shapes, each a table of this kind."), Field(min_length=1)
-    ]
+    parts: Annotated[list["AnyShape"], Field(min_length=1)] = key(
+        "The shapes, each a table of this kind."
+    )
 
 
 SHAPES: dict[str, type[Pose]] = {
@@ -192,69 +183,61 @@ TextOrTexts = Annotated[
 class Traits(Entry):
     """Keys that sensors and objects share."""
 
-    extend: Annotated[
-        Literal["none", "rest"],
-        key("``rest``: before and after its recording the body stays where it was."),
-    ] = "none"
-    offset: Annotated[
-        Pose | None, key("Pose of the sensor or object in the recorded body's frame.")
-    ] = None
-    shape: Annotated[AnyShape | None, key("Its surface, in its own frame.")] = None
-    agent: Annotated[
-        str, key("Name of the agent whose body it is or rides on; the first if not given.")
-    ] = ""
+    extend: Literal["none", "rest"] = key(
+        "``rest``: before and after its recording the body stays where it was.", "none"
+    )
+    offset: Pose | None = key("Pose of the sensor or object in the recorded body's frame.", None)
+    shape: AnyShape | None = key("Its surface, in its own frame.", None)
+    agent: str = key("Name of the agent whose body it is or rides on; the first if not given.", "")
 
 
 class Tracked(Traits):
     """Keys that say which body or which markers of a file something is."""
 
-    file: Annotated[
-        str | None,
-        key("Name under ``[files]``; needed if several files have the name.",
-            beside=("body", "markers")),
-    ] = None  # fmt: skip
-    body: Annotated[
-        TextOrTexts | None,
-        key(
-            "Name of the body or joint in the file; or several names or patterns with *, one "
-            "recorded after the other.",
-            apart=("markers",),
-        ),
-    ] = None
-    markers: Annotated[
-        list[str] | None, key("Three or more markers that keep their distances.")
-    ] = None
-    residual_m: Annotated[
-        float,
-        key("Largest median distance of the markers from their rigid places.", unit="m",
-            beside=("markers",)),
-    ] = 0.010  # fmt: skip
-    arrangement: Annotated[
-        dict[str, Vector] | None,
-        key("Place of each marker in the body's frame [m]; else fitted to the recording.",
-            beside=("markers",), apart=("origin", "axes")),
-    ] = None  # fmt: skip
-    origin: Annotated[
-        list[str],
-        key("Markers whose mean is the frame's origin; else the mean of all.",
-            beside=("markers",)),
-    ] = []  # fmt: skip
+    file: str | None = key(
+        "Name under ``[files]``; needed if several files have the name.",
+        None,
+        beside=("body", "markers"),
+    )
+    body: TextOrTexts | None = key(
+        "Name of the body or joint in the file; or several names or patterns with *, one "
+        "recorded after the other.",
+        None,
+        apart=("markers",),
+    )
+    markers: list[str] | None = key("Three or more markers that keep their distances.", None)
+    residual_m: float = key(
+        "Largest median distance of the markers from their rigid places.",
+        0.010,
+        unit="m",
+        beside=("markers",),
+    )
+    arrangement: dict[str, Vector] | None = key(
+        "Place of each marker in the body's frame [m]; else fitted to the recording.",
+        None,
+        beside=("markers",),
+        apart=("origin", "axes"),
+    )
+    origin: list[str] = key(
+        "Markers whose mean is the frame's origin; else the mean of all.", [], beside=("markers",)
+    )
     axes: Annotated[
-        dict[Literal["x", "y", "z"], Pair] | None,
-        Field(min_length=2, max_length=2),
-        key("Two axes, each from one marker to another; the second is made square to the first.",
-            beside=("markers",)),
-    ] = None  # fmt: skip
-    extend: Annotated[
-        Literal["none", "rest"],
-        key("``rest``: before and after its recording the body stays where it was.",
-            beside=("body", "markers")),
-    ] = "none"  # fmt: skip
-    offset: Annotated[
-        Pose | None,
-        key("Pose of the sensor or object in the recorded body's frame.",
-            beside=("body", "markers")),
-    ] = None  # fmt: skip
+        dict[Literal["x", "y", "z"], Pair] | None, Field(min_length=2, max_length=2)
+    ] = key(
+        "Two axes, each from one marker to another; the second is made square to the first.",
+        None,
+        beside=("markers",),
+    )
+    extend: Literal["none", "rest"] = key(
+        "``rest``: before and after its recording the body stays where it was.",
+        "none",
+        beside=("body", "markers"),
+    )
+    offset: Pose | None = key(
+        "Pose of the sensor or object in the recorded body's frame.",
+        None,
+        beside=("body", "markers"),
+    )
 
 
 class SensorEntry(Tracked):
@@ -262,38 +245,34 @@ class SensorEntry(Tracked):
 
     one_of: ClassVar[tuple[str, ...]] = ("body", "markers")
 
-    name: Annotated[Name, key("A name of its own: lower case, digits and _.")]
-    end_effector: Annotated[
-        str, key("What the segment is, a noun without side: hand, foot, head, eyes, knee ...")
-    ]
-    side: Annotated[Literal["right", "left", "none"], key("Its side.")] = "none"
-    link: Annotated[
-        str | None, key("The chain that it ends, like right_arm; derived if not given.")
-    ] = None
-    role: Annotated[
-        Literal["acts", "attends"] | None,
-        key("``acts`` makes segments, ``attends`` gives gaze; head and eyes attend, else acts."),
-    ] = None
-    gaze: Annotated[Vector, key("Direction of sight in the sensor's frame.")] = [1.0, 0.0, 0.0]
-    eye: Annotated[Vector, key("Where sight starts in the sensor's frame.", unit="m")] = [0.0] * 3
+    name: Name = key("A name of its own: lower case, digits and _.")
+    end_effector: str = key(
+        "What the segment is, a noun without side: hand, foot, head, eyes, knee ..."
+    )
+    side: Literal["right", "left", "none"] = key("Its side.", "none")
+    link: str | None = key("The chain that it ends, like right_arm; derived if not given.", None)
+    role: Literal["acts", "attends"] | None = key(
+        "``acts`` makes segments, ``attends`` gives gaze; head and eyes attend, else acts.", None
+    )
+    gaze: Vector = key("Direction of sight in the sensor's frame.", [1.0, 0.0, 0.0])
+    eye: Vector = key("Where sight starts in the sensor's frame.", [0.0] * 3, unit="m")
 
 
 class ObjectTraits(Traits):
     """Keys that an ``[[object]]`` shares with many objects declared at once."""
 
-    tag: Annotated[
-        Literal["self", "fixed", "mobile"] | None,
-        key("A part of the agent, fixed in the world, or able to be moved."),
-    ] = None
-    kind: Annotated[Filled | None, key("Its noun; the name if not given.")] = None
-    assumed: Annotated[
-        str, key("Why and how its pose or size is an assumption, where it was not recorded.")
-    ] = ""
-    deformable: Annotated[bool, key("Whether it gives way under a hand.")] = False
-    motion_floor_m: Annotated[
-        Positive | None, key("A smaller displacement of it is no motion.", unit="m")
-    ] = None
-    mass_kg: Annotated[Positive | None, key("Its mass.", unit="kg")] = None
+    tag: Literal["self", "fixed", "mobile"] | None = key(
+        "A part of the agent, fixed in the world, or able to be moved.", None
+    )
+    kind: Filled | None = key("Its noun; the name if not given.", None)
+    assumed: str = key(
+        "Why and how its pose or size is an assumption, where it was not recorded.", ""
+    )
+    deformable: bool = key("Whether it gives way under a hand.", False)
+    motion_floor_m: Positive | None = key(
+        "A smaller displacement of it is no motion.", None, unit="m"
+    )
+    mass_kg: Positive | None = key("Its mass.", None, unit="kg")
 
 
 class ObjectEntry(Tracked, ObjectTraits):
@@ -301,99 +280,86 @@ class ObjectEntry(Tracked, ObjectTraits):
 
     one_of: ClassVar[tuple[str, ...]] = ("body", "markers", "position", "top_at_bottom_of")
 
-    name: Annotated[Name, key("A name of its own: lower case, digits and _.")]
-    tag: Annotated[
-        Literal["self", "fixed", "mobile"],
-        key("A part of the agent, fixed in the world, or able to be moved."),
-    ]
-    position: Annotated[
-        Annotated[list[float], Field(min_length=2, max_length=3)] | None,
-        key(
-            "x, y and z in the world, whose z axis points up whatever ``up`` says of the files; "
-            "x and y only, where ``top_at_bottom_of`` gives the height.",
-            unit="m",
-            apart=("body", "markers"),
-        ),
-    ] = None
-    orientation: Annotated[
-        Quaternion | None,
-        key(
-            "Unit quaternion w x y z in the world, whose z axis points up.",
-            beside=("position",),
-            apart=("body", "markers", "top_at_bottom_of"),
-        ),
-    ] = None
-    top_at_bottom_of: Annotated[
-        str | None,
-        key(
-            "Object that rests on this one, or a pattern with *: the upper side is put at its "
-            "lowest point.",
-            apart=("body", "markers"),
-        ),
-    ] = None
-    at_s: Annotated[
-        float | None,
-        key("When that object rests on it; from the end if negative.", unit="s",
-            beside=("top_at_bottom_of",)),
-    ] = None  # fmt: skip
-    of: Annotated[
-        Literal["median", "lowest"],
-        key("Which height to take of several objects.", beside=("top_at_bottom_of",)),
-    ] = "median"
-    turn_deg: Annotated[
-        float, key("Rotation about the vertical.", unit="deg", beside=("top_at_bottom_of",))
-    ] = 0.0
-    surface_m: Annotated[
-        float | None,
-        key("Height of the bearing surface in its own frame; its highest point if not given.",
-            unit="m", beside=("top_at_bottom_of",)),
-    ] = None  # fmt: skip
+    name: Name = key("A name of its own: lower case, digits and _.")
+    tag: Literal["self", "fixed", "mobile"] = key(
+        "A part of the agent, fixed in the world, or able to be moved."
+    )
+    position: Annotated[list[float], Field(min_length=2, max_length=3)] | None = key(
+        "x, y and z in the world, whose z axis points up whatever ``up`` says of the files; "
+        "x and y only, where ``top_at_bottom_of`` gives the height.",
+        None,
+        unit="m",
+        apart=("body", "markers"),
+    )
+    orientation: Quaternion | None = key(
+        "Unit quaternion w x y z in the world, whose z axis points up.",
+        None,
+        beside=("position",),
+        apart=("body", "markers", "top_at_bottom_of"),
+    )
+    top_at_bottom_of: str | None = key(
+        "Object that rests on this one, or a pattern with *: the upper side is put at its "
+        "lowest point.",
+        None,
+        apart=("body", "markers"),
+    )
+    at_s: float | None = key(
+        "When that object rests on it; from the end if negative.",
+        None,
+        unit="s",
+        beside=("top_at_bottom_of",),
+    )
+    of: Literal["median", "lowest"] = key(
+        "Which height to take of several objects.", "median", beside=("top_at_bottom_of",)
+    )
+    turn_deg: float = key(
+        "Rotation about the vertical.", 0.0, unit="deg", beside=("top_at_bottom_of",)
+    )
+    surface_m: float | None = key(
+        "Height of the bearing surface in its own frame; its highest point if not given.",
+        None,
+        unit="m",
+        beside=("top_at_bottom_of",),
+    )
 
 
 class ManySensors(Entry):
     """A sensor for each of many bodies of a file, named after them."""
 
-    file: Annotated[str, key("Name under ``[files]``.")]
-    bodies: Annotated[TextOrTexts, key("The bodies' names; ``*`` is every body.")] = "*"
-    names: Annotated[
-        dict[str, str], key("What bodies are called whose names in the file are those of others.")
-    ] = {}
-    sides: Annotated[
-        dict[Literal["left", "right"], str], key("How the names of each side begin.")
-    ] = {}
-    attends: Annotated[list[str], key("Bodies that attend; all others act.")] = []
-    end_effectors: Annotated[
-        dict[str, str], key("What bodies are; else their names without side.")
-    ] = {}
-    extend: Annotated[
-        Literal["none", "rest"],
-        key("``rest``: before and after its recording the body stays where it was."),
-    ] = "none"
-    shape: Annotated[AnyShape | None, key("The shape of each, in its own frame.")] = None
+    file: str = key("Name under ``[files]``.")
+    bodies: TextOrTexts = key("The bodies' names; ``*`` is every body.", "*")
+    names: dict[str, str] = key(
+        "What bodies are called whose names in the file are those of others.", {}
+    )
+    sides: dict[Literal["left", "right"], str] = key("How the names of each side begin.", {})
+    attends: list[str] = key("Bodies that attend; all others act.", [])
+    end_effectors: dict[str, str] = key("What bodies are; else their names without side.", {})
+    extend: Literal["none", "rest"] = key(
+        "``rest``: before and after its recording the body stays where it was.", "none"
+    )
+    shape: AnyShape | None = key("The shape of each, in its own frame.", None)
 
 
 class ObjectKind(ObjectTraits):
     """What the objects of one kind are; it prevails over what is said of all."""
 
-    name: Annotated[Name, key("Name of the first; others are numbered.")]
+    name: Name = key("Name of the first; others are numbered.")
 
 
 class ManyObjects(ObjectTraits):
     """An object for each of many bodies of a file, by the kinds that their names tell."""
 
-    file: Annotated[str, key("Name under ``[files]``.")]
-    bodies: Annotated[str, key("A pattern that their names fit.")] = "*"
-    kinds: Annotated[
-        dict[str, ObjectKind],
-        key("Kinds by how names begin; bodies of none are counted and left out."),
-    ] = {}
-    touched_by: Annotated[
-        str, key("A sensor that touches each by distance.", beside=("touched_within_m",))
-    ] = ""
-    touched_within_m: Annotated[
-        float | None,
-        key("At this distance of origins or nearer.", unit="m", beside=("touched_by",)),
-    ] = None
+    file: str = key("Name under ``[files]``.")
+    bodies: str = key("A pattern that their names fit.", "*")
+    kinds: dict[str, ObjectKind] = key(
+        "Kinds by how names begin; bodies of none are counted and left out.", {}
+    )
+    touched_by: str = key(
+        "A sensor that touches each by distance.", "", beside=("touched_within_m",)
+    )
+    touched_within_m: float | None = key(
+        "At this distance of origins or nearer.", None, unit="m", beside=("touched_by",)
+    )
 
 
 def _as_text(value: object) -> object:
@@ -422,90 +388,80 @@ class ArrayGroup(Entry):
 
     one_of: ClassVar[tuple[str, ...]] = ("names", "body")
 
-    positions: Annotated[str, key("Array of positions: (frames, 3) or (frames, bodies, 3).")]
-    quaternions: Annotated[
-        str | None, key("Array of quaternions; points without orientation have none.")
-    ] = None
-    order: Annotated[Order | None, key("Order of the quaternions' components.")] = None
-    names: Annotated[str | None, key("Array of the bodies' names.")] = None
-    body: Annotated[str | None, key("Name of the one body.")] = None
+    positions: str = key("Array of positions: (frames, 3) or (frames, bodies, 3).")
+    quaternions: str | None = key(
+        "Array of quaternions; points without orientation have none.", None
+    )
+    order: Order | None = key("Order of the quaternions' components.", None)
+    names: str | None = key("Array of the bodies' names.", None)
+    body: str | None = key("Name of the one body.", None)
 
 
 class MotionFile(Entry):
     """A motion file, with what it does not state itself; a path alone may be given as text."""
 
-    path: Annotated[
-        str, key("The file, relative to the capture.toml; ${NAME} is an environment variable.")
-    ]
-    unit: Annotated[
-        UnitOrScale | None, key("Unit of this file's lengths, or metres per unit as a number.")
-    ] = None
-    up: Annotated[Up | None, key("The axis of this file that points up.")] = None
-    handedness: Annotated[Handedness | None, key("Handedness of this file's axes.")] = None
-    parents: Annotated[
-        dict[str, str], key("Parent of each joint, where the file holds no skeleton.")
-    ] = {}
-    places: Annotated[
-        dict[str, str],
-        key("Place on the body of joints or markers whose names do not tell it, or tell another."),
-    ] = {}
-    time: Annotated[str | None, key("CSV, NPZ: column or array of times [s].")] = None
-    rate_hz: Annotated[
-        Positive | None,
-        key("CSV, NPZ: frames a second; checked against time stamps if there are any.", unit="Hz"),
-    ] = None
-    fps: Annotated[str | None, key("NPZ: array that holds the rate [Hz].")] = None
-    arrays: Annotated[list[ArrayGroup] | None, key("NPZ: what the arrays are.")] = None
-    columns: Annotated[
-        dict[str, list[str]] | None,
-        key("CSV: the 7 columns (x y z, quaternion) or 3 columns (x y z) of each body or point."),
-    ] = None
-    order: Annotated[Order | None, key("CSV: order of the quaternions' columns; xyzw.")] = None
-    delimiter: Annotated[str | None, key("CSV: what separates cells.")] = None
-    folder: Annotated[str | None, key("JSON in a tar archive: the folder in it.")] = None
-    time_unit_s: Annotated[
-        Positive | None, key("JSON: seconds per unit of the time stamps; 0.001.", unit="s")
-    ] = None
+    path: str = key("The file, relative to the capture.toml; ${NAME} is an environment variable.")
+    unit: UnitOrScale | None = key(
+        "Unit of this file's lengths, or metres per unit as a number.", None
+    )
+    up: Up | None = key("The axis of this file that points up.", None)
+    handedness: Handedness | None = key("Handedness of this file's axes.", None)
+    parents: dict[str, str] = key("Parent of each joint, where the file holds no skeleton.", {})
+    places: dict[str, str] = key(
+        "Place on the body of joints or markers whose names do not tell it, or tell another.", {}
+    )
+    time: str | None = key("CSV, NPZ: column or array of times [s].", None)
+    rate_hz: Positive | None = key(
+        "CSV, NPZ: frames a second; checked against time stamps if there are any.", None, unit="Hz"
+    )
+    fps: str | None = key("NPZ: array that holds the rate [Hz].", None)
+    arrays: list[ArrayGroup] | None = key("NPZ: what the arrays are.", None)
+    columns: dict[str, list[str]] | None = key(
+        "CSV: the 7 columns (x y z, quaternion) or 3 columns (x y z) of each body or point.", None
+    )
+    order: Order | None = key("CSV: order of the quaternions' columns; xyzw.", None)
+    delimiter: str | None = key("CSV: what separates cells.", None)
+    folder: str | None = key("JSON in a tar archive: the folder in it.", None)
+    time_unit_s: Positive | None = key(
+        "JSON: seconds per unit of the time stamps; 0.001.", None, unit="s"
+    )
 
 
 class Performer(Entry):
     """Who performs. One under ``[agent]``; several each under ``[[agent]]``."""
 
-    name: Annotated[Filled, key("A name of its own.")] = "agent"
-    kind: Annotated[Filled, key("A noun.")] = "person"
-    measures: Annotated[
-        dict[str, float], key("Lengths [m] by name (``stature``), and ``mass`` [kg].")
-    ] = {}
+    name: Filled = key("A name of its own.", "agent")
+    kind: Filled = key("A noun.", "person")
+    measures: dict[str, float] = key("Lengths [m] by name (``stature``), and ``mass`` [kg].", {})
 
 
 class Contact(Entry):
     """When two bodies count as touching."""
 
-    tolerance_m: Annotated[
-        Tolerance | None,
-        key("Largest distance of surfaces in contact; derived from noise if not given.", unit="m"),
-    ] = None
-    dropout_s: Annotated[
-        Tolerance | None, key("Shorter interruptions of a contact are closed.", unit="s")
-    ] = None
-    minimum_s: Annotated[Tolerance | None, key("Shorter contacts are dropped.", unit="s")] = None
+    tolerance_m: Tolerance | None = key(
+        "Largest distance of surfaces in contact; derived from noise if not given.", None, unit="m"
+    )
+    dropout_s: Tolerance | None = key(
+        "Shorter interruptions of a contact are closed.", None, unit="s"
+    )
+    minimum_s: Tolerance | None = key("Shorter contacts are dropped.", None, unit="s")
 
 
 class Pivots(Entry):
     """Two bodies that touch while their origins are near, for bodies without shapes."""
 
-    first: Annotated[str, key("Name of a sensor or object.")]
-    second: Annotated[str, key("Name of the other.")]
-    distance_m: Annotated[float, key("They touch at this distance or nearer.", unit="m")]
+    first: str = key("Name of a sensor or object.")
+    second: str = key("Name of the other.")
+    distance_m: float = key("They touch at this distance or nearer.", unit="m")
 
 
 class Purposes(Entry):
     """What a step is done for; the first that fits counts."""
 
-    purpose: Annotated[str, key("The purpose, as an action.")]
-    action: Annotated[str, key("Only steps of this name.")] = ""
-    object: Annotated[str, key("Only steps about this object.")] = ""
-    goal: Annotated[str, key("Only steps with this goal.")] = ""
+    purpose: str = key("The purpose, as an action.")
+    action: str = key("Only steps of this name.", "")
+    object: str = key("Only steps about this object.", "")
+    goal: str = key("Only steps with this goal.", "")
 
 
 def _has_name(value: dict[str, str]) -> dict[str, str]:
@@ -517,19 +473,17 @@ def _has_name(value: dict[str, str]) -> dict[str, str]:
 class Takes(Entry):
     """The trials that one file describes."""
 
-    takes: Annotated[
-        list[
-            Annotated[
-                Annotated[str, Tag("as text")]
-                | Annotated[dict[str, str], AfterValidator(_has_name), Tag("as table")],
-                Discriminator(form_of_value),
-            ]
-        ],
-        key(
-            "Names of the trials that the file describes, each a text or a table with ``take``; "
-            "{take} and the table's other keys in braces are replaced in every text."
-        ),
-    ] = []
+    takes: list[
+        Annotated[
+            Annotated[str, Tag("as text")]
+            | Annotated[dict[str, str], AfterValidator(_has_name), Tag("as table")],
+            Discriminator(form_of_value),
+        ]
+    ] = key(
+        "Names of the trials that the file describes, each a text or a table with ``take``; "
+        "{take} and the table's other keys in braces are replaced in every text.",
+        [],
+    )
 
 
 class CaptureFile(Takes):
@@ -537,40 +491,30 @@ class CaptureFile(Takes):
 
     one_of: ClassVar[tuple[str, ...]] = ("sensor", "sensors_from")
 
-    name: Annotated[Filled | None, key("Name of the capture; its folder's if not given.")] = None
-    recorded: Annotated[
-        Annotated[str, BeforeValidator(_as_text), AfterValidator(_is_time)] | None,
-        key(
-            "When it was recorded: a date, or a date and time with or without a time zone (ISO "
-            "8601); it goes before what files say."
-        ),
-    ] = None
-    unit: Annotated[
-        UnitOrScale | None,
-        key("Unit of lengths in files that do not state it, or metres per unit as a number."),
-    ] = None
-    up: Annotated[Up | None, key("Axis that points up in files that do not state it.")] = None
-    handedness: Annotated[
-        Handedness, key("Of the files' axes; a left-handed world is mirrored in x.")
-    ] = "right"
-    rate_hz: Annotated[
-        Positive | None,
-        key("Every stream is resampled to it; needed if files have different clocks.", unit="Hz"),
-    ] = None
-    from_s: Annotated[
-        float | None, key("What is kept begins here, after the first frame.", unit="s")
-    ] = None
-    to_s: Annotated[
-        float | None, key("What is kept ends here, after the first frame.", unit="s")
-    ] = None
-    force_transfer: Annotated[bool, key("Whether force passes to objects in this trial.")] = False
-    parts: Annotated[
-        Literal["together", "apart"],
-        key(
-            "Sensors on parts of one hand or foot, by their names (palm and fingers, heel and "
-            "toes): ``together`` they are one end-effector, ``apart`` each is one of its own."
-        ),
-    ] = "together"
+    name: Filled | None = key("Name of the capture; its folder's if not given.", None)
+    recorded: Annotated[str, BeforeValidator(_as_text), AfterValidator(_is_time)] | None = key(
+        "When it was recorded: a date, or a date and time with or without a time zone (ISO "
+        "8601); it goes before what files say.",
+        None,
+    )
+    unit: UnitOrScale | None = key(
+        "Unit of lengths in files that do not state it, or metres per unit as a number.", None
+    )
+    up: Up | None = key("Axis that points up in files that do not state it.", None)
+    handedness: Handedness = key(
+        "Of the files' axes; a left-handed world is mirrored in x.", "right"
+    )
+    rate_hz: Positive | None = key(
+        "Every stream is resampled to it; needed if files have different clocks.", None, unit="Hz"
+    )
+    from_s: float | None = key("What is kept begins here, after the first frame.", None, unit="s")
+    to_s: float | None = key("What is kept ends here, after the first frame.", None, unit="s")
+    force_transfer: bool = key("Whether force passes to objects in this trial.", False)
+    parts: Literal["together", "apart"] = key(
+        "Sensors on parts of one hand or foot, by their names (palm and fingers, heel and "
+        "toes): ``together`` they are one end-effector, ``apart`` each is one of its own.",
+        "together",
+    )
     files: Annotated[
         dict[
             str,
@@ -580,20 +524,18 @@ class CaptureFile(Takes):
             ],
         ],
         Field(min_length=1),
-        key('Motion files by names of your choice: ``motion = "recording.c3d"``.'),
-    ]
+    ] = key('Motion files by names of your choice: ``motion = "recording.c3d"``.')
     agent: Annotated[
         Annotated[Performer, Tag("as table")] | Annotated[list[Performer], Tag("as list")],
         Discriminator(form_of_value),
-        key("Who performs: one under ``[agent]``, several each under ``[[agent]]``."),
-    ] = []
-    contact: Annotated[Contact | None, key("When bodies touch.")] = None
-    sensor: Annotated[list[SensorEntry], key("Tracked body segments.")] = []
-    sensors_from: Annotated[list[ManySensors], key("Many sensors at once.")] = []
-    object: Annotated[list[ObjectEntry], key("What may be touched.")] = []
-    objects_from: Annotated[list[ManyObjects], key("Many objects at once.")] = []
-    pivot_contact: Annotated[list[Pivots], key("Contact by distance of origins.")] = []
-    purpose: Annotated[list[Purposes], key("What steps are done for.")] = []
+    ] = key("Who performs: one under ``[agent]``, several each under ``[[agent]]``.", [])
+    contact: Contact | None = key("When bodies touch.", None)
+    sensor: list[SensorEntry] = key("Tracked body segments.", [])
+    sensors_from: list[ManySensors] = key("Many sensors at once.", [])
+    object: list[ObjectEntry] = key("What may be touched.", [])
+    objects_from: list[ManyObjects] = key("Many objects at once.", [])
+    pivot_contact: list[Pivots] = key("Contact by distance of origins.", [])
+    purpose: list[Purposes] = key("What steps are done for.", [])
 
     @property
     def performers(self) -> list[Performer]:

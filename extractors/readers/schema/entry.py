@@ -19,7 +19,7 @@ from pydantic import (
     model_validator,
 )
 from pydantic.fields import FieldInfo
-from pydantic_core import CoreSchema, PydanticCustomError
+from pydantic_core import CoreSchema, PydanticCustomError, PydanticUndefined
 
 from capar.model.errors import CaparError, FileError, UnknownNameError
 from extractors.readers.files import read_text
@@ -125,24 +125,24 @@ class Entry(BaseModel):
 
 def key(
     meaning: str,
+    default: Any = PydanticUndefined,
     *,
     unit: str = "",
     beside: tuple[str, ...] = (),
     apart: tuple[str, ...] = (),
-    **constraints: Any,
 ) -> Any:
-    """What a key means: the description of its field.
+    """The field of a key.
 
     Args:
         meaning: One or two sentences, with what holds where the key is not given.
+        default: Its value then; without one it must be given.
         unit: The unit of its numbers.
         beside: Keys of which one must be given with it.
         apart: Keys that cannot be given with it.
-        constraints: Limits, as in ``pydantic.Field``.
     """
     text = f"{meaning} [{unit}]" if unit else meaning
     extra: Any = {"beside": list(beside), "apart": list(apart)}
-    return Field(description=text, json_schema_extra=extra, **constraints)
+    return Field(default, description=text, json_schema_extra=extra)
 
 
 def relation(field: FieldInfo, name: str) -> list[str]:

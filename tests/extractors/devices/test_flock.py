@@ -16,7 +16,6 @@ from extractors.devices.flock import (
     FlockRig,
     FlockSimulator,
     FlockTracker,
-    flock_settings,
 )
 from extractors.devices.simulator import Faults, Sent, SmoothMotion
 from extractors.devices.tracker import parse_address
@@ -215,8 +214,7 @@ def test_a_unit_that_does_not_answer_is_an_error_with_its_remedy() -> None:
 
 def test_a_rate_that_the_line_cannot_carry_is_refused_with_the_arithmetic() -> None:
     with pytest.raises(DeviceError, match=r"12 x 15 bytes .* 18594 bytes a second, .* 64 Hz"):
-        flock_settings(parse_address("flock:/dev/x?birds=12&rate=103.3"))
-    assert flock_settings(parse_address("flock:/dev/x?birds=12&rate=51.65")).every == 2
+        FlockTracker(parse_address("flock:/dev/x?birds=12&rate=103.3"))
 
 
 @given(form=st.sampled_from(sorted(FORMATS)), birds=st.integers(1, 13), erc=st.booleans())
@@ -224,9 +222,10 @@ def test_exactly_the_rates_that_fit_are_taken(form: str, birds: int, erc: bool) 
     group = birds + erc > 1
     limit_hz = min(MOST_HZ, FlockLayout(FORMATS[form], group).limit_hz(birds, 115200))
     text = f"flock:/dev/x?birds={birds}&erc={'yes' if erc else 'no'}&format={form}&rate="
-    assert flock_settings(parse_address(f"{text}{limit_hz * 0.999}")).rate_hz < limit_hz
+    taken = FlockTracker(parse_address(f"{text}{limit_hz * 0.999}"))
+    assert taken.describe().rate_hz < limit_hz
     with pytest.raises(DeviceError):
-        flock_settings(parse_address(f"{text}{limit_hz * 1.001}"))
+        FlockTracker(parse_address(f"{text}{limit_hz * 1.001}"))
 
 
 @pytest.mark.parametrize(
@@ -249,4 +248,4 @@ def test_exactly_the_rates_that_fit_are_taken(form: str, birds: int, erc: bool) 
 )
 def test_a_wrong_option_is_told(options: str, said: str) -> None:
     with pytest.raises(Exception, match=said):
-        flock_settings(parse_address(f"flock:/dev/x?{options}"))
+        FlockTracker(parse_address(f"flock:/dev/x?{options}"))
