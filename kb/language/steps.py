@@ -73,8 +73,9 @@ class Narrator:
         self._takings = {
             giving: taking
             for giving in observation.segments
+            if giving.name == "Give"
             for taking in sorted(observation.segments, key=lambda each: each.first)
-            if giving.name == "Give" and taking.name in {"Receive", "Accept"}
+            if taking.name in {"Receive", "Accept"}
             if taking.ee != giving.ee and taking.objects[:1] == giving.objects[:1]
             if taking.first <= giving.last
         }
@@ -170,12 +171,12 @@ class Narrator:
         places = joined([f"{{{number}}}" for number in range(1, count + 1)])
         if not segment.known:
             moved = segment.possessed and segment.features.change_loc.startswith("1")
-            return (
-                f"{'move {1}' if moved else f'handle {places}'} in a way that no rule names",
-                objects,
-            )
+            verb = "move {1}" if moved else f"handle {places}"
+            return f"{verb} in a way that no rule names", objects
         cases = self._cases(segment, before)
         text = phrase_pattern(segment.name, segment.general, cases, count, self._words)
+        if "in" in cases and text in {"put {1} on {2}", "bring {1} to {2}"}:
+            text = "put {1} in {2}"
         if text == "hand {1} over" and (taking := self._takings.get(segment)) is not None:
             (link,) = (each for each in self._seen.links if each.ee == taking.ee)
             text += f" to the {spoken(link)}"
@@ -184,18 +185,20 @@ class Narrator:
         touched = segment.features.rel_start[:count], segment.features.rel_end[:count]
         if not segment.possessed and count > 1 and "{2}" not in text and "1" * count in touched:
             return text.replace("{1}", places), tuple(sorted(objects))
-        others = {
-            word: other
+        others = [
+            (word, other)
             for word, body, other in segment.prepositions
             if body == objects[0] and other not in objects
-        }
-        source = others.get("off") or others.get("out of")
+        ]
+        source = [other for word, other in others if word in {"off", "out of"}][:1]
         if source and text in {"lift {1}", "bring {1} to {2}"}:
-            word = "off" if count == 1 or text == "lift {1}" else "from"
-            return text.replace("{1}", f"{{1}} {word} {{{count + 1}}}"), (*objects, source)
-        if segment.possessed and "with" in others:
-            return text.replace("{1}", f"{{1}} with {{{count + 1}}}"), (*objects, others["with"])
-        return text, objects
+            word = "off" if text == "lift {1}" else "from"
+            return text.replace("{1}", f"{{1}} {word} {{{count + 1}}}"), (*objects, *source)
+        loads = [other for word, other in others if word == "with" and segment.possessed]
+        if loads:
+            loaded = joined([f"{{{count + at}}}" for at in range(1, len(loads) + 1)])
+            text = text.replace("{1}", f"{{1}} with {loaded}")
+        return text, (*objects, *loads)
 
     def _cases(self, segment: Segment, before: Segment | None) -> set[str]:
         """What holds of a segment, in the words of the table of phrases."""
@@ -213,8 +216,11 @@ class Narrator:
             pair = thing, other = segment.objects[:2]
             words = {word for word, body, at in segment.prepositions if (body, at) == pair}
             after = self._next.get(key)
-            moves = after is not None and after.features.change_loc.startswith("1")
-            worked_at = moves and after is not None and after.objects[:2] == pair
+            worked_at = (
+                after is not None
+                and after.objects[:2] == pair
+                and after.features.change_loc.startswith("1")
+            )
             tag = self._tags.get(other)
             cases |= {
                 "tool": ("with", other, thing) in segment.prepositions,
