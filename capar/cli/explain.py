@@ -7,7 +7,7 @@ import typer
 from typer import Argument, Option
 
 from capar.cli.options import Beside, Capture, Json, ProfileName, Rules, Steady, rule_base
-from capar.cli.output import check_picture, check_writable, print_json, save
+from capar.cli.output import check_picture, print_json, save
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,7 +32,6 @@ def explain(
     actionary: Beside = None,
     steady: Steady = None,
     json: Json = False,
-    svg: Annotated[Path | None, Option(help="Draw the tree to this file.")] = None,
     plot: Annotated[
         Path | None,
         Option(help="Draw what SEGMENT's conditions measure to a .png, .svg or .pdf file."),
@@ -44,12 +43,9 @@ def explain(
     """
     from capar.pipelines.explanation import chosen, explained, explanation_plot
     from capar.views.explanation_plot import draw_explanation
-    from capar.views.explanation_svg import reasons_svg
     from capar.views.explanation_text import explanation_lines
     from extractors.readers.bundle.capture_toml import read_capture
 
-    if svg:
-        check_writable(svg, suffixes=(".svg",))
     check_picture(plot)
     base = rule_base(profile, rules, actionary, steady=steady)
     seen = explained(read_capture(capture), rules=base)
@@ -60,8 +56,6 @@ def explain(
         _why_not(why_not, asked, seen, json=json, alone=alone)
         return
     told = seen.explain(asked)
-    if svg:
-        save(svg, reasons_svg(told, observation), "drew")
     if plot:
         if len(told) != 1:
             raise typer.BadParameter(

@@ -97,35 +97,24 @@ def reason_tree(told: Explanation, seen: Observation) -> Reason:
     other end-effector that takes part. When it was looked at is said by measured looks alone.
     """
     top = told.reason
-    below = [
-        cause
-        for cause in map(_by_looks, top.because)
-        if cause is not None and not cause.atom.startswith(JOINT)
-    ]
+    below = []
+    for cause in top.because:
+        if cause.atom.startswith(LOOKS):
+            looks = tuple(each for each in cause.because if each.atom.startswith(LOOK))
+            below += [replace(cause, because=looks)] if looks else []
+        elif not cause.atom.startswith(JOINT):
+            below.append(cause)
     below += _joint(told, seen)
     return replace(top, because=tuple(below)).with_sentences().without_repeats()
 
 
-def note(reason: Reason) -> str:
-    """The rule that a line rests on, and that others of its reasons stand above it."""
-    above = (ALSO_ABOVE if reason.because else ABOVE) if reason.repeated else ""
-    return "; ".join(filter(None, (reason.rule, above)))
-
-
 def _branch(reason: Reason, depth: int) -> Iterator[str]:
     frames = f"  [frames {reason.frames[0]} to {reason.frames[1]}]" if reason.frames else ""
-    rule = f"  ({noted})" if (noted := note(reason)) else ""
-    yield f"{'  ' * depth}- {reason.sentence}{frames}{rule}"
+    above = (ALSO_ABOVE if reason.because else ABOVE) if reason.repeated else ""
+    noted = "; ".join(filter(None, (reason.rule, above)))
+    yield f"{'  ' * depth}- {reason.sentence}{frames}{f'  ({noted})' if noted else ''}"
     for below in reason.because:
         yield from _branch(below, depth + 1)
-
-
-def _by_looks(reason: Reason) -> Reason | None:
-    """The same with nothing but looks below it, if it is about looks; None without any."""
-    if not reason.atom.startswith(LOOKS):
-        return reason
-    looks = tuple(cause for cause in reason.because if cause.atom.startswith(LOOK))
-    return replace(reason, because=looks) if looks else None
 
 
 def _joint(told: Explanation, seen: Observation) -> Iterator[Reason]:

@@ -4,18 +4,17 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import asdict
 from functools import singledispatch
 from importlib import import_module
-from math import hypot
+from math import degrees, hypot
 from typing import TYPE_CHECKING, Any
 
-from capar.model.calibration import BodyCalibration, Calibration, Found, PairCalibration
+from capar.model.calibration import Calibration, Found
 from capar.model.errors import CaparError, UnknownNameError
 from capar.model.facts import Touching
-from capar.model.observation import ForceStyle, Observation, ObservedLink, Segment, SegmentAddress
+from capar.model.observation import Observation, ObservedLink, Segment, SegmentAddress
 from capar.model.par import (
     Call,
     ComplexPar,
     Condition,
-    Constraint,
     CoreSemantics,
     FeatureSet,
     Ipar,
@@ -108,24 +107,25 @@ def joint_lines(observation: Observation) -> tuple[str, ...]:
 
 def force_lines(observation: Observation) -> tuple[str, ...]:
     """What set things going that then moved on alone, a line for each (thesis 3.4.3)."""
-    return tuple(_force_line(force, observation.profile) for force in observation.forces)
-
-
-def _force_line(force: ForceStyle, profile: str) -> str:
-    pace = sum(part**2 for part in force.velocity_mps) ** 0.5
-    did = "strikes" if force.struck else "lets go of"
-    words = [f"{force.ee} {did} {force.object} at {force.start_s:.2f} s, which goes {pace:.2f} m/s"]
-    if force.restitution is not None:
-        words.append(f"restitution {force.restitution:.2f}")
-    if force.damping_per_s is not None:
-        words.append("damping {:.2f} and {:.2f} /s along x and y".format(*force.damping_per_s))
-    if profile == "thesis" and force.thesis_damping is not None:
-        words.append("by eq. 3.9 {:.2f} and {:.2f} /s^2".format(*force.thesis_damping))
-    if force.bounce is not None:
-        words.append(f"bounces with {force.bounce:.2f}")
-    if force.impulse_ns is not None:
-        words.append("impulse ({:.2f}, {:.2f}, {:.2f}) N s".format(*force.impulse_ns))
-    return ", ".join(words)
+    lines = []
+    for force in observation.forces:
+        did = "strikes" if force.struck else "lets go of"
+        pace = hypot(*force.velocity_mps)
+        line = (
+            f"{force.ee} {did} {force.object} at {force.start_s:.2f} s, which goes {pace:.2f} m/s"
+        )
+        thesis = force.thesis_damping if observation.profile == "thesis" else None
+        for words, value in (
+            ("restitution {:.2f}", force.restitution),
+            ("damping {:.2f} and {:.2f} /s along x and y", force.damping_per_s),
+            ("by eq. 3.9 {:.2f} and {:.2f} /s^2", thesis),
+            ("bounces with {:.2f}", force.bounce),
+            ("impulse ({:.2f}, {:.2f}, {:.2f}) N s", force.impulse_ns),
+        ):
+            if value is not None:
+                line += f", {words.format(*(value if isinstance(value, tuple) else (value,)))}"
+        lines.append(line)
+    return tuple(lines)
 
 
 def aligned(
@@ -283,15 +283,25 @@ def _ipar(par: Ipar) -> str:
 def _complex(par: ComplexPar) -> str:
     head = f"COMPLEX PAR {call(Call(par.name or 'unnamed', par.objects))}, {par.duration_s:.3f} s"
     out = [head]
-    rows = [_step(step) for link in par.links for step in link.steps]
-    rows += [_step(par.common)] if par.common else []
+    steps = [step for link in par.links for step in link.steps]
+    rows = [
+        (
+            call(Call(step.action, step.objects)),
+            f"for {step.purpose}" if step.purpose else "",
+            f"to posture {step.posture}" if step.posture else "",
+            f"from {step.begin:.4f}",
+            f"share {step.share:.4f}",
+        )
+        for step in (*steps, *([par.common] if par.common else []))
+    ]
     table = iter(aligned(rows, right={3, 4}))
     for link in par.links:
         out += [f"  {link.ee} in sequence", *(f"    {next(table)}" for _ in link.steps)]
     if par.common:
         out += ["  all together, last", f"    {next(table)}"]
     out += [
-        f"  {_place(each.first)} {each.relation} {_place(each.second)}" for each in par.relations
+        "  {}[{}] {} {}[{}]".format(*each.first, each.relation, *each.second)
+        for each in par.relations
     ]
     return "\n".join(out) + "\n"
 
@@ -316,6 +326,9 @@ def _core(core: CoreSemantics, objects: Sequence[str]) -> list[Line]:
     moved = f" of {core.moved}" if core.moved else ""
     caused = ", caused by the agent" if core.causal else ""
     motion = "none" if core.motion is Motion.NONE else f"{core.motion.value}{moved}{caused}"
+    pair = core.constraint.colliding_objects
+    names = {END_EFFECTOR: "EE", **dict(enumerate(objects))}
+    bits = core.constraint.features
     duration = "a parameter" if core.duration_s is None else f"{core.duration_s:.3f} s"
     return [
         ("motion", motion),
@@ -326,36 +339,13 @@ def _core(core: CoreSemantics, objects: Sequence[str]) -> list[Line]:
         *_each("until", map(condition, core.termination)),
         ("duration", duration),
         *_each("manner of", filter(None, [core.manner])),
-        *_constraint(core.constraint, objects),
+        ("collides", " with ".join(names.get(each, f"#{each}") for each in pair)),
+        ("relations at start", bits.rel_start or "-"),
+        ("relations at end", bits.rel_end or "-"),
+        ("changes location", bits.change_loc or "-"),
+        ("force", bits.force or "-"),
+        ("end-effector type", bits.end_effector),
     ]
-
-
-def _constraint(constraint: Constraint, objects: Sequence[str]) -> list[Line]:
-    features = constraint.features
-    names = {END_EFFECTOR: "EE", **dict(enumerate(objects))}
-    pair = " with ".join(names.get(each, f"#{each}") for each in constraint.colliding_objects)
-    return [
-        ("collides", pair),
-        ("relations at start", features.rel_start or "-"),
-        ("relations at end", features.rel_end or "-"),
-        ("changes location", features.change_loc or "-"),
-        ("force", features.force or "-"),
-        ("end-effector type", features.end_effector),
-    ]
-
-
-def _step(step: Step) -> tuple[str, ...]:
-    return (
-        call(Call(step.action, step.objects)),
-        f"for {step.purpose}" if step.purpose else "",
-        f"to posture {step.posture}" if step.posture else "",
-        f"from {step.begin:.4f}",
-        f"share {step.share:.4f}",
-    )
-
-
-def _place(place: tuple[str, int]) -> str:
-    return f"{place[0]}[{place[1]}]"
 
 
 def _each(name: str, values: Iterable[str]) -> list[Line]:
@@ -369,7 +359,6 @@ def _block(head: str, lines: Sequence[Line]) -> str:
 
 BODY_COLUMNS = ("body", "noise mm", "noise deg", "floor mm", "floor deg", "highest m/s", "held")
 PAIR_COLUMNS = ("pair", "touch mm", "release mm", "of", "found by", "frames", "contradicts")
-_DEGREES = 57.29577951308232
 
 
 def calibration_tables(calibration: Calibration) -> tuple["Table", ...]:
@@ -377,18 +366,37 @@ def calibration_tables(calibration: Calibration) -> tuple["Table", ...]:
     from rich.table import Table
 
     whole = Table("calibration", "")
-    for name, value in whole_rows(calibration):
+    for name, value in _whole_rows(calibration):
         whole.add_row(name, value)
     bodies = Table(*BODY_COLUMNS)
     for body in (*calibration.sensors, *calibration.objects):
-        bodies.add_row(*_body_row(body))
+        bodies.add_row(
+            body.name,
+            _mm(body.noise_m),
+            f"{degrees(body.noise_rad):.3f}",
+            _mm(body.motion_floor_m),
+            f"{degrees(body.motion_floor_rad):.2f}",
+            f"{body.highest_speed_mps:.2f}",
+            "at its median" if body.fixed else ("recorded still" if body.still else ""),
+        )
     pairs = Table(*PAIR_COLUMNS)
     for pair in calibration.pairs:
-        pairs.add_row(*_pair_row(pair))
+        cells = ["-", "-", "-", pair.found.value, "", ""]
+        if pair.found is not Found.NEVER:
+            estimated = pair.found not in (Found.STATED, Found.TOLERANCE)
+            cells = [
+                _mm(pair.touch_m),
+                _mm(pair.release_m),
+                ("points" if estimated else "origins") if pair.pivots else "surfaces",
+                pair.found.value,
+                str(pair.frames) if pair.frames else "",
+                "" if pair.shown_m is None else f"{_mm(pair.shown_m)} mm",
+            ]
+        pairs.add_row(f"{pair.first} {pair.second}", *cells)
     return whole, bodies, pairs
 
 
-def whole_rows(calibration: Calibration) -> tuple[tuple[str, str], ...]:
+def _whole_rows(calibration: Calibration) -> tuple[tuple[str, str], ...]:
     """Names and values of what holds for the whole recording."""
     horizons = calibration.horizons
     return (
@@ -408,31 +416,6 @@ def whole_rows(calibration: Calibration) -> tuple[tuple[str, str], ...]:
         ("half length of the low-pass", f"{horizons.filter_s:.3f} s"),
         ("extrema of speed compared within", f"{horizons.extremum_s:.3f} s"),
         ("margin of a window", f"{horizons.margin_s:.3f} s"),
-    )
-
-
-def _pair_row(pair: PairCalibration) -> tuple[str, ...]:
-    """How two bodies touch, how that was found, and what the recording shows against it."""
-    names = f"{pair.first} {pair.second}"
-    if pair.found is Found.NEVER:
-        return names, "-", "-", "-", pair.found.value, "", ""
-    estimated = pair.found not in (Found.STATED, Found.TOLERANCE)
-    kind = ("points" if estimated else "origins") if pair.pivots else "surfaces"
-    shown = "" if pair.shown_m is None else f"{_mm(pair.shown_m)} mm"
-    frames = str(pair.frames) if pair.frames else ""
-    return names, _mm(pair.touch_m), _mm(pair.release_m), kind, pair.found.value, frames, shown
-
-
-def _body_row(body: BodyCalibration) -> tuple[str, ...]:
-    held = "at its median" if body.fixed else ("recorded still" if body.still else "")
-    return (
-        body.name,
-        _mm(body.noise_m),
-        f"{_DEGREES * body.noise_rad:.3f}",
-        _mm(body.motion_floor_m),
-        f"{_DEGREES * body.motion_floor_rad:.2f}",
-        f"{body.highest_speed_mps:.2f}",
-        held,
     )
 
 
@@ -456,13 +439,8 @@ def observation_frame(observation: Observation, of: str) -> Any:
     """
     if of not in FRAMES:
         raise UnknownNameError("data frame", of, FRAMES)
-    columns, rows = FRAMES[of]
-    return _pandas().DataFrame(list(rows(observation)), columns=list(columns))
-
-
-def _pandas() -> Any:
     try:
-        return import_module("pandas")
+        pandas = import_module("pandas")
     except ModuleNotFoundError as error:
         if error.name != "pandas":
             raise
@@ -470,6 +448,8 @@ def _pandas() -> Any:
             "data frames need pandas, which is not installed; it comes with the extra 'frames': "
             "pip install 'capar[frames]'"
         ) from None
+    columns, rows = FRAMES[of]
+    return pandas.DataFrame(list(rows(observation)), columns=list(columns))
 
 
 def _segments(observation: Observation) -> Iterator[Row]:

@@ -274,33 +274,26 @@ def check_known(store: "Store", asked: Question, given: Mapping[str, object]) ->
                 listed = bool(PARAMETERS[parameter.name].get("listed"))
                 raise UnknownNameError(kind, value, known, where=store.place, listed=listed)
     if {"capture", "time"} <= given.keys():
-        _check_time(store, str(given["capture"]), float(str(given["time"])))
-        if "body" in given:
-            _check_seen(store, str(given["capture"]), str(given["body"]), float(str(given["time"])))
-
-
-def _check_time(store: "Store", capture: str, time_s: float) -> None:
-    lasts = f"?of a capar:Capture ; capar:name {Literal(capture)} ; capar:duration ?name"
-    end_s = max(map(float, _texts(store, lasts)))
-    if not 0.0 <= time_s <= max(end_s, round(end_s, 3)):
-        raise CaparError(
-            f"{store.place}: {capture} lasts from 0 to {end_s:.3f} s; {time_s:g} s lies outside"
-        )
-
-
-def _check_seen(store: "Store", capture: str, body: str, time_s: float) -> None:
-    tracks = _texts(
-        store,
-        f"?seen capar:capture/capar:name {Literal(capture)} ; capar:link|capar:object ?of . "
-        f"?of capar:name|capar:ee {Literal(body)} ; capar:track ?name",
-    )
-    for text in tracks:
-        lost_s = statements.track_of(text).lost_around(time_s)
-        if lost_s is not None:
+        capture, time_s = str(given["capture"]), float(str(given["time"]))
+        lasts = f"?of a capar:Capture ; capar:name {Literal(capture)} ; capar:duration ?name"
+        end_s = max(map(float, _texts(store, lasts)))
+        if not 0.0 <= time_s <= max(end_s, round(end_s, 3)):
             raise CaparError(
-                f"{store.place}: where {body!r} was at {time_s:g} s is not known: "
-                f"{capture} lost it from {lost_s[0]:.2f} to {lost_s[1]:.2f} s"
+                f"{store.place}: {capture} lasts from 0 to {end_s:.3f} s; {time_s:g} s lies outside"
             )
+        body = str(given.get("body", ""))
+        tracks = _texts(
+            store,
+            f"?seen capar:capture/capar:name {Literal(capture)} ; capar:link|capar:object ?of . "
+            f"?of capar:name|capar:ee {Literal(body)} ; capar:track ?name",
+        )
+        for text in tracks if body else ():
+            lost_s = statements.track_of(text).lost_around(time_s)
+            if lost_s is not None:
+                raise CaparError(
+                    f"{store.place}: where {body!r} was at {time_s:g} s is not known: "
+                    f"{capture} lost it from {lost_s[0]:.2f} to {lost_s[1]:.2f} s"
+                )
 
 
 def _texts(store: "Store", pattern: str) -> set[str]:
@@ -338,7 +331,11 @@ def cells(answer: Answer) -> list[tuple[str, ...]]:
     """The rows of an answer as texts for people: numbers short, IRIs with their prefixes."""
     if answer.boolean is not None:
         return [("yes" if answer.boolean else "no",)]
-    return [tuple(map(_cell, row)) for row in _rows(answer)]
+    rows = (map(plain, row) for row in _rows(answer))
+    return [
+        tuple("" if e is None else f"{e:.6g}" if isinstance(e, float) else str(e) for e in row)
+        for row in rows
+    ]
 
 
 def _rows(answer: Answer) -> list[tuple[Term, ...]]:
@@ -347,30 +344,15 @@ def _rows(answer: Answer) -> list[tuple[Term, ...]]:
     return list(answer.rows)
 
 
-def _cell(term: Term) -> str:
-    value = plain(term)
-    if value is None:
-        return ""
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
-
-
 def as_csv(answer: Answer) -> str:
     """Comma-separated values with a header, numbers exact, IRIs in full."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(header(answer))
-    if answer.boolean is not None:
-        writer.writerow([str(answer.boolean).lower()])
-    else:
-        writer.writerows([_exact(each) for each in row] for row in _rows(answer))
+    truth = [] if answer.boolean is None else [[answer.boolean]]
+    for row in truth or [list(map(exact, row)) for row in _rows(answer)]:
+        writer.writerow([str(e).lower() if isinstance(e, bool) else e for e in row])
     return out.getvalue()
-
-
-def _exact(term: Term) -> str:
-    value = exact(term)
-    if isinstance(value, bool):
-        return str(value).lower()
-    return "" if value is None else str(value)
 
 
 def as_json(answer: Answer) -> str:
@@ -404,11 +386,8 @@ def as_table(answer: Answer) -> str:
     """Aligned columns for anything that is no terminal."""
     rows = [header(answer), *cells(answer)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]
-    return "\n".join(lines) + "\n"
+    padded = ([f"{c:<{width}}" for c, width in zip(row, widths, strict=True)] for row in rows)
+    return "".join("  ".join(row).rstrip() + "\n" for row in padded)
 
 
 def listing() -> Answer:

@@ -73,10 +73,10 @@ FAULTS = (
     (("rules", "list", "--rules", "unread"), "unread/sip.lp", "cannot be read"),
     (("rules", "list", "--rules", "shut"), "shut", "not readable"),
     (("inspect", "unread/motion.csv"), "unread/motion.csv", "Grant yourself read permission"),
-    (("explain", DEMO, "right_hand/2", "--svg", "ro/k.svg"), "ro/k.svg", "Permission denied"),
-    (("explain", DEMO, "right_hand/2", "--svg", "nowhere/k.svg"), "nowhere/k.svg",
+    (("explain", DEMO, "right_hand/2", "--plot", "ro/k.svg"), "ro/k.svg", "Permission denied"),
+    (("explain", DEMO, "right_hand/2", "--plot", "nowhere/k.svg"), "nowhere/k.svg",
      "No such file or directory"),
-    (("explain", DEMO, "right_hand/2", "--svg", "kept.svg"), "kept.svg", "Permission denied"),
+    (("explain", DEMO, "right_hand/2", "--plot", "kept.svg"), "kept.svg", "Permission denied"),
     (("new-capture", DEMO / "motion.csv", "-o", "ro/a/b"), "ro/a", "Permission denied"),
 )  # fmt: skip
 
