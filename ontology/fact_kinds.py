@@ -28,11 +28,7 @@ capar:{name}
     skos:definition "{definition}"@en ;
     rdfs:subClassOf capar:{general} .
 """
-_GENERAL = {
-    Span.ALWAYS: "SceneFact",
-    Span.INSTANT: "InstantFact",
-    Span.INTERVAL: "IntervalFact",
-}
+_GENERAL = {Span.ALWAYS: "SceneFact", Span.INSTANT: "InstantFact", Span.INTERVAL: "IntervalFact"}
 
 
 def turtle() -> str:
