@@ -52,18 +52,6 @@ FALSE = (
 )
 
 
-@pytest.mark.parametrize("claim", TRUE)
-def test_true_claims_hold(drink, claim):
-    assert judge(claim, drink).holds, judge(claim, drink).found
-
-
-@pytest.mark.parametrize("claim", FALSE)
-def test_false_claims_do_not_and_say_what_was_found(drink, claim):
-    verdict = judge(claim, drink)
-    assert not verdict.holds
-    assert verdict.found
-
-
 @pytest.fixture(scope="module")
 def lift() -> Observation:
     return observe(motions.pick_up_with_both_hands(motions.TALL_MAN).capture)
@@ -88,19 +76,17 @@ FALSE_OF_BOTH = (
 )
 
 
-@pytest.mark.parametrize("claim", TRUE_OF_BOTH)
-def test_what_both_hands_do_can_be_claimed(lift, claim):
-    assert judge(claim, lift).holds, judge(claim, lift).found
+@pytest.mark.parametrize("claim", [*TRUE, *TRUE_OF_BOTH])
+def test_true_claims_hold(drink, lift, claim):
+    found = judge(claim, drink if claim in TRUE else lift)
+    assert found.holds, found.found
 
 
-@pytest.mark.parametrize("claim", FALSE_OF_BOTH)
-def test_what_both_hands_do_not_do_is_no_true_claim(lift, claim):
-    assert not judge(claim, lift).holds
-
-
-@pytest.mark.parametrize("claim", ["both hands do MoveObj(mug)", "both hands do Reach(mug)"])
-def test_one_hand_alone_is_not_both(drink, claim):
-    assert not judge(claim, drink).holds
+@pytest.mark.parametrize("claim", [*FALSE, *FALSE_OF_BOTH])
+def test_false_claims_do_not_and_say_what_was_found(drink, lift, claim):
+    verdict = judge(claim, drink if claim in FALSE else lift)
+    assert not verdict.holds
+    assert verdict.found
 
 
 @pytest.mark.parametrize(
@@ -120,20 +106,12 @@ def test_a_claim_that_cannot_be_read_says_why(drink, claim, message):
 
 
 UNKNOWN = (
-    ("left_hand Reach", "no acting end-effector 'left_hand'"),
     ("left_hand and right_hand do Reach(mug)", "no acting end-effector 'left_hand'"),
     ("both feet do Reach", "no pair of acting end-effectors 'both feet'"),
     ("right_hand Raech(mug)", "no primitive 'Raech'.*Did you mean 'Reach'"),
-    ("both hands do Raech", "no primitive 'Raech'"),
-    ("right_hand Lift(mug)", "no primitive 'Lift'"),
     ("right_hand MoveObjTo(mugg, head)", "no object 'mugg'.*Did you mean 'mug'"),
-    ("right_hand MoveObjTo(_, haed)", "no object 'haed'"),
-    ("mug touches cup", "no body 'cup'"),
     ("cup lets go of mug", "no body 'cup'"),
-    ("cup moves", "no object 'cup'"),
     ("right_hand moves", "no object 'right_hand'"),
-    ("head looks at cup", "no object 'cup'"),
-    ("haed looks at mug", "no sensor that looks 'haed'"),
     ("right_hand looks at mug", "no sensor that looks 'right_hand'"),
     ("head looks away from cup", "no object 'cup'"),
 )
@@ -148,11 +126,6 @@ def test_what_bears_no_such_name_is_refused_in_every_form_of_claim(drink, event,
         with pytest.raises(UnknownNameError, match=message) as told:
             judge(form.format(event), drink)
         assert isinstance(told.value, ClaimError)
-
-
-def test_a_name_of_the_profile_that_fits_nothing_here_can_be_denied(drink):
-    assert judge("no right_hand Hit(mug)", drink).holds
-    assert judge("no right_hand Unknown", drink).holds
 
 
 def test_the_names_of_a_user_s_rules_can_be_claimed(drink, tmp_path):
@@ -181,14 +154,6 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_the_command_exits_with_one_if_a_claim_fails(folder):
-    result = CliRunner().invoke(app, ["test", str(folder), "--json"])
-    assert result.exit_code == 1
-    (suite,) = json.loads(result.output)
-    assert (suite["tests"], suite["failures"]) == (2, 1)
-    assert [each["passed"] for each in suite["cases"]] == [True, False]
-
-
 def with_pytest(folder: Path, *options: str) -> subprocess.CompletedProcess[str]:
     named = {each.value for each in entry_points(group="pytest11")}
     plugin = [] if "capar.claims.pytest_plugin" in named else ["-p", "capar.claims.pytest_plugin"]
@@ -196,14 +161,6 @@ def with_pytest(folder: Path, *options: str) -> subprocess.CompletedProcess[str]
         [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *plugin, *options, "."],
         cwd=folder, capture_output=True, text=True, check=False,
     )  # fmt: skip
-
-
-def test_pytest_collects_files_of_claims(folder):
-    done = with_pytest(folder, "-q")
-    assert done.returncode == 1, done.stdout + done.stderr
-    assert "1 failed, 1 passed" in done.stdout
-    assert "found: never" in done.stdout
-    assert "Traceback" not in done.stdout
 
 
 @pytest.fixture

@@ -89,17 +89,6 @@ def kept(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_stored_facts_are_those_that_were_measured(kept):
-    seen = stored(str(kept / "actionary"), profile="thesis").seen
-    (name,) = seen
-    again = captured([str(kept / "captures" / "drink")], rules=profile("thesis"))
-    observed = observe(DEMO, rules="thesis")
-    assert seen[name].facts == again[name].facts == observed.facts
-    assert [each.name for each in seen[name].names or ()] == [
-        each.name for each in observed.segments
-    ]
-
-
 def test_the_segments_change_as_the_comparison_foretold(kept):
     place = str(kept / "actionary")
     before, after = profile("thesis"), admitted_profile("thesis", added=(kept / "lift.lp",))
@@ -117,18 +106,6 @@ def test_the_segments_change_as_the_comparison_foretold(kept):
     assert renamed(stored(place, profile="thesis").seen, before=after, after=after) == ()
 
 
-def test_names_that_share_a_segment_are_stored_with_it(kept):
-    raising = LIFT.replace("Lift", "Raising").replace('specialises("Raising", "MoveObjTo").\n', "")
-    (kept / "raising.lp").write_text(raising)
-    after = admitted_profile("thesis", added=(kept / "raising.lp",))
-    place = str(kept / "actionary")
-    effect = reclassified(place, after=after, captures=[kept / "captures"])
-    assert [(each.after, each.after_others) for each in effect.changes] == [
-        ("MoveObjTo", ("Raising",))
-    ]
-    assert renamed(stored(place, profile="thesis").seen, before=after, after=after) == ()
-
-
 def test_observations_of_another_profile_are_left_alone_and_said_so(kept):
     place = str(kept / "actionary")
     with Actionary.open(place, read_only=True) as store:
@@ -142,16 +119,6 @@ def test_observations_of_another_profile_are_left_alone_and_said_so(kept):
     told = CliRunner().invoke(app, command, catch_exceptions=False)
     assert told.stdout == "segments that change: 0\n"
     assert told.stderr == "observations made with another profile, left alone: 1\n"
-
-
-def test_what_is_compared_with_is_the_name_that_is_stored(kept):
-    place = str(kept / "actionary")
-    with_lift = admitted_profile("thesis", added=(kept / "lift.lp",))
-    reclassified(place, after=with_lift, captures=[kept / "captures"])
-    without = profile("thesis")
-    changes = renamed(stored(place, profile="thesis").seen, before=without, after=without)
-    assert [(each.before, each.after) for each in changes] == [("Lift", "MoveObjTo")]
-    assert bearing(place, ["Lift"]) == 1
 
 
 def test_a_segment_without_steadying_stays_so(tmp_path):

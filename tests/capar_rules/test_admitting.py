@@ -13,43 +13,6 @@ from capar_rules.authoring.user_rules import (
     user_rules,
 )
 from capar_rules.lint.checking import admit, admitted_profile, faults
-from capar_rules.lint.findings import Finding
-
-BY_TEXT = {
-    "script_python": "script",
-    "script_later": "script",
-    "at_function": "external-function",
-    "include_passwd": "include",
-    "include_hidden": "include",
-    "include_library": "include",
-    "choice": "choice-head",
-    "constraint": "constraint-head",
-    "minimize": "refused-statement",
-    "external": "refused-statement",
-    "program_part": "refused-statement",
-    "even_loop": "negative-cycle",
-    "const_taken": "taken-constant",
-    "redefines_input": "redefined-predicate",
-    "renames_reach": "taken-name",
-    "speaks_for_others": "foreign-name",
-    "circle": "circular",
-    "unsafe": "unsafe-variable",
-    "unknown_word": "unknown-predicate",
-    "no_full_stop": "syntax",
-    "not_a_program": "syntax",
-    "zero_byte": "encoding",
-    "latin_1": "encoding",
-    "too_large": "too-large",
-    "deep_brackets": "too-deep",
-    "deep_minus": "unbounded",
-    "long_sum": "unbounded",
-    "explodes": "unbounded",
-    "explodes_in_body": "unbounded",
-    "endless": "unbounded",
-    "endless_terms": "unbounded",
-    "endless_text": "unbounded",
-}
-"""What the text alone tells of files made by hand; two of them break the parser."""
 
 COUNTED = """%* Counted: it is counted along the ticks. *%
 primitive("Counted").
@@ -70,36 +33,6 @@ def kept(folder: Path, name: str, content: str | bytes) -> Path:
     path = folder / f"{name}.lp"
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     return path
-
-
-@pytest.fixture(scope="module")
-def refused(tmp_path_factory) -> dict[str, tuple[Path, tuple[Finding, ...]]]:
-    """Each bad file and what is found in it; all are judged one after another, in few processes."""
-    folder = tmp_path_factory.mktemp("bad")
-    contents = {**hostile_rules.BY_HAND, **hostile_rules.BYTES}
-    paths = {name: kept(folder, name, contents[name]) for name in BY_TEXT}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        found = [faults([path], profile="thesis") for path in paths.values()]
-    assert not (folder / "HARMED").exists()
-    return {name: (path, each) for (name, path), each in zip(paths.items(), found, strict=True)}
-
-
-@pytest.mark.parametrize("name", sorted(BY_TEXT))
-def test_a_bad_file_is_refused_with_its_place_and_what_would_be_right(name, refused):
-    path, found = refused[name]
-    assert BY_TEXT[name] in {each.code for each in found}
-    for each in found:
-        assert str(each).startswith(f"{path}:{each.place.line}:{each.place.column}: error: ")
-        assert each.remedy.endswith((".", "..."))
-
-
-def test_no_profile_is_made_with_a_bad_file_and_nothing_of_it_is_run(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    path = kept(tmp_path, "bad", hostile_rules.BY_HAND["script_later"])
-    with pytest.raises(RuleError, match=f"{path}:4:1: error: #script runs code"):
-        admitted_profile("thesis", added=(path,))
-    assert not (tmp_path / "HARMED").exists()
 
 
 def test_mutants_never_break_the_process_that_admits_them(tmp_path):

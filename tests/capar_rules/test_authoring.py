@@ -15,7 +15,6 @@ from capar_rules.authoring.user_primitives import (
     read_examples,
     removable,
     rule_of,
-    rules_of,
     telling,
     try_rule,
     user_rules,
@@ -61,16 +60,6 @@ def grasp(tmp_path: Path) -> Path:
     path = tmp_path / "grasp.lp"
     path.write_text(GRASP)
     return path
-
-
-def test_the_shipped_primitives_are_listed_with_their_definitions():
-    found = {each.name: each for each in rules_of(profile("thesis"))}
-    assert set(found) == {
-        "Hit", "MoveObj", "MoveObjTo", "Reach", "ResumePosture", "Touch", "TouchWith",
-    }  # fmt: skip
-    assert found["TouchWith"].general == ("Touch",)
-    assert found["Reach"].definition.startswith("the end-effector comes to touch")
-    assert {each.origin for each in found.values()} == {"core"}
 
 
 def test_examples_are_read_as_they_are_written(grasp):
@@ -125,14 +114,6 @@ def test_what_a_file_introduces_is_read_as_rules_are(tmp_path, text, names):
     path = tmp_path / "nip.lp"
     path.write_text(text)
     assert introduced(path) == names
-
-
-def test_every_primitive_of_a_line_needs_its_examples(grasp):
-    grasp.write_text(
-        GRASP.replace('primitive("Grasp").', 'primitive("Grasp"). primitive( "Grab" ).')
-    )
-    failures = try_rule(grasp, base="thesis")
-    assert [each.partition("lacks ")[2] for each in failures] == ["an Example in which Grab occurs"]
 
 
 def test_examples_that_hold_are_silent_and_others_say_what_was_found(grasp):
@@ -251,13 +232,6 @@ def test_names_that_may_share_a_segment_are_refused_until_they_are_ordered(unloa
     assert errors(check(added)) == ()
     audited = audit(profile("extended", added=(added,)))
     assert (audited.unchecked, audited.clean) == (("Unload",), True)
-
-
-def test_a_file_that_is_there_already_is_refused_in_one_line(unload, tmp_path):
-    added = add_rule(unload, folder=tmp_path / "rules", over=["all"])
-    (finding,) = check(unload, beside=[added])
-    assert finding.message == f'there is a primitive "Unload" already, in {added}.'
-    assert "capar rules remove Unload" in finding.remedy
 
 
 def test_a_rule_whose_example_fails_is_not_added(grasp, tmp_path):

@@ -10,10 +10,9 @@ from random import Random
 import motions
 import pytest
 from flickering import flickering
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from capar.model.errors import RuleError
 from capar.model.facts import (
     Fact,
     FlickerCorrection,
@@ -28,9 +27,8 @@ from capar.model.facts import (
 from capar.model.par import LinkSteps, Step
 from capar_rules.borders.border_numbers import by_object, overlapping, shared, undisturbed
 from capar_rules.borders.deflicker import steady
-from capar_rules.borders.ticks import Meanwhile, Shares, Undisturbed, in_frames, times
+from capar_rules.borders.ticks import Meanwhile, Undisturbed, times
 from capar_rules.engine.profiles import profile
-from capar_rules.engine.solver import rule_file
 from capar_rules.pars.inference import infer
 from capar_rules.pars.pars import _relations, allen
 from extractors.measure import measure
@@ -59,38 +57,33 @@ def doubts(facts: tuple[Fact, ...]) -> list[FlickerCorrection]:
     return [each for each in facts if isinstance(each, FlickerCorrection)]
 
 
-def test_a_short_loss_of_contact_is_bridged_and_told() -> None:
-    found = steady((*SCENE, *touches((50, 100), (111, 200))))
-    assert contacts(found) == [(50, 200)]
-    assert doubts(found) == [FlickerCorrection("hand", "mug", 101, 110, "touching")]
+@pytest.mark.parametrize(
+    ("spans", "left", "taken"),
+    [
+        (((50, 100), (111, 200)), [(50, 200)], "touching"),
+        (((50, 100), (101 + FLICKER, 200)), [(50, 100), (101 + FLICKER, 200)], None),
+        (((50, 54), (90, 94), (200, 300)), [(50, 54), (90, 94), (200, 300)], None),
+        (((50, 51), (60, 62), (70, 200)), [(70, 200)], "apart"),
+    ],
+    ids=["short loss", "long loss", "lone contacts", "chatter before a grasp"],
+)
+def test_contact_that_flickers_is_resolved_and_other_contact_stays(
+    spans: tuple[Span, ...], left: list[Span], taken: str | None
+) -> None:
+    found = steady((*SCENE, *touches(*spans)))
+    assert contacts(found) == left
+    assert {each.taken for each in doubts(found)} == ({taken} if taken else set())
 
 
-def test_a_loss_as_long_as_letting_go_and_taking_again_stays() -> None:
-    measured = (*SCENE, *touches((50, 100), (101 + FLICKER, 200)))
-    assert steady(measured) == measured
-
-
-def test_a_lone_contact_stays_however_short_it_is() -> None:
-    measured = (*SCENE, *touches((50, 54), (90, 94), (200, 300)))
-    assert steady(measured) == measured
-
-
-def test_chatter_before_a_grasp_is_one_beginning() -> None:
-    found = steady((*SCENE, *touches((50, 51), (60, 62), (70, 200))))
-    assert contacts(found) == [(70, 200)]
-    assert {each.taken for each in doubts(found)} == {"apart"}
-
-
-def test_a_thing_that_stops_for_a_moment_moves_on() -> None:
-    found = steady((*SCENE, *touches((50, 300)), Moving("mug", 80, 120), Moving("mug", 125, 200)))
-    assert Moving("mug", 80, 200) in found
-    assert doubts(found) == [FlickerCorrection("mug", "mug", 121, 124, "moving")]
-
-
-def test_a_hand_that_twitches_rests_on() -> None:
-    found = steady((*SCENE, Resting("hand", 0, 100), Resting("hand", 110, 300)))
-    assert Resting("hand", 0, 300) in found
-    assert doubts(found) == [FlickerCorrection("hand", "hand", 101, 109, "resting")]
+@pytest.mark.parametrize(
+    ("one", "other", "whole"),
+    [
+        (Moving("mug", 80, 120), Moving("mug", 125, 200), Moving("mug", 80, 200)),
+        (Resting("hand", 0, 100), Resting("hand", 110, 300), Resting("hand", 0, 300)),
+    ],
+)
+def test_motion_and_rest_that_are_lost_for_a_moment_go_on(one: Fact, other: Fact, whole: Fact):
+    assert whole in steady((*SCENE, *touches((50, 300)), one, other))
 
 
 def test_what_passes_from_one_thing_to_another_changes_once() -> None:
@@ -251,49 +244,6 @@ def scene(intervals: list[Interval], first: int, last: int) -> tuple[Fact, ...]:
     return (Frames(first, last), *FLICKER_WINDOWS_SCENE, *cut)
 
 
-def changes(intervals: list[Interval]) -> set[int]:
-    return {frame for each in intervals for frame in (each.first, each.last + 1)}
-
-
-@st.composite
-def flicker_windows_courses(draw: st.DrawFn) -> list[Interval]:
-    """Contacts and rest of a hand that flicker, with longer stretches between."""
-    found: list[Interval] = []
-    for name in ("mug", "jar", "hand"):
-        frame = draw(st.integers(0, 9))
-        for _ in range(draw(st.integers(1, 9))):
-            length = draw(st.integers(1, 2 * FLICKER_WINDOWS_FLICKER))
-            last = frame + length - 1
-            rest = name == "hand"
-            found.append(
-                Resting("hand", frame, last) if rest else Touching("hand", name, frame, last)
-            )
-            frame += length + draw(
-                st.sampled_from([1, 2, 2, FLICKER_WINDOWS_FLICKER, 4 * FLICKER_WINDOWS_FLICKER])
-            )
-    return found
-
-
-@settings(max_examples=60, deadline=None)
-@given(intervals=flicker_windows_courses(), data=st.data())
-def test_where_nothing_changes_for_two_flickers_both_sides_are_resolved_alone(
-    intervals: list[Interval], data: st.DataObject
-) -> None:
-    end = max(changes(intervals)) + 2 * FLICKER_WINDOWS_FLICKER
-    cuts = [
-        frame
-        for frame in range(FLICKER_WINDOWS_FLICKER, end - FLICKER_WINDOWS_FLICKER)
-        if not changes(intervals)
-        & set(range(frame - FLICKER_WINDOWS_FLICKER + 1, frame + FLICKER_WINDOWS_FLICKER + 1))
-    ]
-    assume(cuts)
-    cut = data.draw(st.sampled_from(cuts))
-    parts = flicker_windows_doubts(scene(intervals, 0, cut)) | flicker_windows_doubts(
-        scene(intervals, cut + 1, end)
-    )
-    assert parts == flicker_windows_doubts(scene(intervals, 0, end))
-
-
 def chatter(draw_lengths: list[int]) -> list[Interval]:
     """A contact that is lost and found every few frames, throughout."""
     found: list[Interval] = []
@@ -322,19 +272,6 @@ def test_flicker_that_never_ends_is_resolved_a_window_at_a_time(lengths: list[in
 def last(fact: Fact) -> int:
     assert isinstance(fact, FlickerCorrection)
     return fact.last
-
-
-@pytest.mark.parametrize("windows", [1, 2])
-def test_what_holds_at_the_end_of_a_window_is_believed(windows: int) -> None:
-    intervals = chatter([1])
-    end = intervals[0].first + windows * WINDOW - 1
-    found = [
-        each
-        for each in flicker_windows_doubts(scene(intervals, 0, LAST))
-        if isinstance(each, FlickerCorrection)
-    ]
-    assert [each for each in found if each.first <= end <= each.last] == []
-    assert found, "the rest of the flicker is resolved"
 
 
 SPANS = st.lists(
@@ -412,40 +349,6 @@ def test_a_change_meanwhile_lies_between_its_tick_and_the_next(
     inside = [each for each in pairs if each[0].first <= each[1].first]
     begins = [each for each in facts if isinstance(each, Meanwhile) and each.kind == "begins"]
     assert len(begins) == len(inside)
-
-
-@given(sharing_contacts("right_hand"), sharing_contacts("left_hand"))
-def test_what_one_shares_before_the_other_shares_after(
-    own: list[Touching], others: list[Touching]
-) -> None:
-    ticks = [0, FRAMES]
-    mine = overlapping(own, [by_object(others)])
-    yours = overlapping(others, [by_object(own)])
-    before = [
-        each for each in shared("right_hand", ticks, mine, rate_hz=100.0)
-        if isinstance(each, Shares) and each.when == "before"
-    ]  # fmt: skip
-    after = [
-        each for each in shared("left_hand", ticks, yours, rate_hz=100.0)
-        if isinstance(each, Shares) and each.when == "after"
-    ]  # fmt: skip
-    assert len(before) == len(after)
-    assert {each.object for each in before} == {each.object for each in after}
-
-
-"""How long a process that checks untrusted rules may run: no time of a capture."""
-
-
-def test_times_are_those_of_the_rules() -> None:
-    text = rule_file("thresholds.lp").read_text()
-    assert f"#const merge_ms = {times().merge_ms}." in text
-    assert f"#const flicker_ms = {times().flicker_ms}." in text
-    assert in_frames(150, 100.0) == 15.0
-
-
-def test_borders_that_could_merge_may_not_be_cut_apart() -> None:
-    with pytest.raises(RuleError, match="merge_ms <= settled_ms"):
-        replace(times(), merge_ms=250, settled_ms=200, margin_ms=1000)
 
 
 INVERSE = {

@@ -73,14 +73,3 @@ def test_a_checker_that_fails_by_itself_blames_no_file(tmp_path, monkeypatch):
     monkeypatch.setattr(checking, "_START", "raise SystemExit('out of order')")
     with pytest.raises(RuleError, match="the checker process failed: out of order"):
         answer(requests(tmp_path, "p(1).\n")[0])
-
-
-def test_no_package_forks_by_itself():
-    root = Path(checking.__file__).parents[2]
-    sources = [
-        path
-        for name in ("capar", "extractors", "capar_rules", "kb", "ontology")
-        for path in (root / name).rglob("*.py")
-    ]
-    assert len(sources) > 200
-    assert [str(each) for each in sources if "os.fork" in each.read_text()] == []

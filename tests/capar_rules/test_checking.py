@@ -1,7 +1,6 @@
 """Rule files are checked before they count: every file gets an answer, and nothing of it runs."""
 
 import os
-import time
 from pathlib import Path
 
 import hostile_rules
@@ -51,6 +50,14 @@ EXPECTED = {
     "deep_brackets": "too-deep",
     "big_number": "number",
     "endless": "unbounded",
+    "include_library": "include",
+    "not_a_program": "syntax",
+    "deep_minus": "unbounded",
+    "long_sum": "unbounded",
+    "explodes": "unbounded",
+    "explodes_in_body": "unbounded",
+    "endless_terms": "unbounded",
+    "endless_text": "unbounded",
 }
 """What is wrong with some of the files made by hand."""
 
@@ -84,22 +91,6 @@ def test_what_is_wrong_is_named_with_its_place_and_remedy(answers, name):
         assert each.place.file.endswith(f"{name}.lp")
         assert each.remedy.endswith((".", "...", ". *%"))
         assert str(each).startswith(f"{each.place}: error: ")
-
-
-def test_mutants_get_an_answer_in_bounded_time(tmp_path):
-    count = len(hostile_rules.BY_HAND) + len(hostile_rules.BYTES)
-    paths = hostile_rules.write_all(tmp_path, count + 25)[count:]
-    start = time.monotonic()
-    found = [check(each, profile="thesis") for each in paths]
-    assert time.monotonic() - start < 120.0
-    assert len(found) == len(paths)
-    assert sum(bool(errors(each)) for each in found) >= 20
-
-
-def test_a_sound_file_passes(tmp_path):
-    path = tmp_path / "hoist.lp"
-    path.write_text(hostile_rules.SOUND)
-    assert errors(check(path)) == ()
 
 
 def test_a_rule_that_can_never_fire_and_one_that_always_does_are_found(tmp_path):

@@ -7,12 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from capar.model.errors import RuleError
-from capar.model.facts import Fact, Frames, Link, Moving, RateMhz, Tag, Touching, ZeroCrossing
+from capar.model.facts import Fact, Frames, Touching, ZeroCrossing
 from capar_rules.engine import solver, syntax
-from capar_rules.engine.profiles import profile
 from capar_rules.engine.solver import brave
 from capar_rules.engine.syntax import Signature, asked_for, firing, parse, parse_text
-from capar_rules.pars.inference import infer
 
 RULES = """
 #show seen/1.
@@ -70,26 +68,6 @@ def test_rules_that_change_are_read_anew_however_often_they_were_asked(tmp_path:
     assert ("no_one_is_seated",) in after.of("named")
 
 
-def test_the_shipped_rules_answer_the_same_whole_and_reduced_to_what_facts_reach() -> None:
-    rules = profile()
-    facts: list[Fact] = [Frames(0, 300), RateMhz(100_000), Link("hand", "hand", "right")]
-    facts += [Tag("mug", "mobile"), Touching("hand", "mug", 100, 200), Moving("mug", 120, 180)]
-    found = [infer(facts, profile=rules) for _ in range(solver.OFTEN + 2)]
-    assert found == [found[0]] * len(found)
-    assert found[0].links[0].segments[0].name == "Reach"
-
-
-def test_over_many_facts_rules_are_reduced_at_once_and_answer_the_same(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    rules = tmp_path / "rules.lp"
-    rules.write_text(REACHED)
-    whole = solver.solve([rules], TOUCHES + CROSSINGS)
-    rules.write_text(f"{REACHED}% The same again, not asked yet.")
-    monkeypatch.setattr(solver, "MANY_FACTS", 1)
-    assert solver.solve([rules], TOUCHES + CROSSINGS) == whole
-
-
 SLICING_RULES = parse_text(
     """
     #const enough = 2.
@@ -137,23 +115,6 @@ def test_the_rules_that_can_fire_answer_as_all_do(told: dict[Signature, set[str]
     assert whole == part
 
 
-@pytest.mark.parametrize(
-    ("kinds", "heads"),
-    [
-        ((), set()),
-        ((("seen", 1),), {"lost", "many", "all_near", "odd"}),
-        ((("moved", 1), ("turned", 1)), {"shaken"}),
-        ((("near", 2), ("moved", 1)), {"held", "carried"}),
-    ],
-)
-def test_a_rule_is_left_out_when_nothing_that_it_asks_for_is_measured(
-    kinds: tuple[Signature, ...], heads: set[str]
-) -> None:
-    kept = firing(SLICING_RULES, kinds)
-    assert {head.signature[0] for each in kept for head in each.heads} == heads
-    assert [each for each in kept if each.kind == "definition"] == [SLICING_RULES[0]]
-
-
 SHOWING = "#show lost/1. #show shaken/1.\n"
 
 
@@ -170,12 +131,6 @@ def test_the_rules_that_are_asked_for_answer_as_all_do(told: dict[Signature, set
     assert whole == part
 
 
-def test_a_rule_is_left_out_when_nothing_that_is_shown_depends_on_it() -> None:
-    kept = asked_for((*parse_text(SHOWING), *SLICING_RULES))
-    heads = {head.signature[0] for rule in kept for head in rule.heads}
-    assert heads == {"held", "lost", "shaken"}
-
-
 @pytest.mark.parametrize(
     "further",
     [
@@ -189,10 +144,6 @@ def test_a_rule_is_left_out_when_nothing_that_is_shown_depends_on_it() -> None:
 def test_all_rules_stay_where_more_than_definitions_decides_on_the_answer(further: str) -> None:
     rules = (*parse_text(SHOWING + further), *SLICING_RULES)
     assert asked_for(rules) == list(rules)
-
-
-def test_all_rules_stay_where_everything_is_shown() -> None:
-    assert asked_for(SLICING_RULES) == list(SLICING_RULES)
 
 
 def texts(path: Path) -> list[str]:

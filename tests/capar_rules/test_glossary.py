@@ -72,21 +72,3 @@ near(Body) :- given(Body).
         "far_mm": (11, "Too far [mm]; it is 5"),
         "near(Body)": (12, "closer than that"),
     }
-
-
-def test_the_words_of_the_user_s_rules_are_explained_too(tmp_path):
-    mine = tmp_path / "nudge.lp"
-    mine.write_text("%* Nudge: a short push.\n\n   brief(Segment)   it is short\n*%\n")
-    found = glossary(Profile("extended", crossings_only=False, added=(mine,)))
-    (word,) = found.find("brief")
-    assert (word.file, word.line, word.meaning) == (str(mine), 3, "it is short")
-
-
-def test_a_word_tells_the_rules_that_define_it(words):
-    (word,) = words.find("possesses")
-    (place,) = words.rules_of(word.signature)
-    assert (word.file, word.arguments) == (
-        "segmentation/possession.lp",
-        ("Hand", "Object", "Since"),
-    )
-    assert place.file == str(rule_file("segmentation/possession.lp"))

@@ -3,7 +3,7 @@
 import pytest
 
 from capar.model.facts import Displaced, read_fact
-from capar_rules.movers.movers import movers, numbered_parts
+from capar_rules.movers.movers import movers
 
 SCENE = """
 frames(0,400) rate_mhz(100000) link(right_hand,hand,right) link(left_hand,hand,left)
@@ -122,13 +122,3 @@ def test_every_frame_of_every_motion_is_told_of(story: str) -> None:
             for frame in range(each.first, each.last + 1)
         }
         assert told == set(range(motion.first, motion.last + 1))
-
-
-def test_parts_cover_motions_without_overlap() -> None:
-    parts = numbered_parts(facts(f"{MOVES} {TRAY} {HELD} displaced(mug,250,260)"))
-    covered = [frame for each in parts for frame in range(each.first, each.last + 1)]
-    assert covered == [*range(100, 201), *range(250, 261)]
-
-
-def test_no_motion_needs_no_mover() -> None:
-    assert movers(facts("touching(right_hand,mug,0,400)")) == ()

@@ -10,7 +10,6 @@ from capar_rules.engine.syntax import parse
 from capar_rules.lint.audit import NAMED, PROFILES, evaluate, every_world, extents_of, fingerprint
 from capar_rules.lint.checking import check
 from capar_rules.lint.findings import Finding, errors
-from capar_rules.lint.world_checks import audit
 
 FITS = ("fits", 2)
 
@@ -122,13 +121,6 @@ def test_a_rule_that_joins_two_segments_is_not_said_never_to_fire(tmp_path):
     assert "Renew and RestFoot" in notes["ambiguous"].message
 
 
-def test_names_of_two_segments_may_share_whatever_the_other_segment_is_called(tmp_path):
-    """A world has one segment: what is asked of another one must not leave out any world."""
-    rule = BEFORE.replace('Before), "Touch"', 'Before), "Lift"')
-    renew = written(tmp_path, "Renew", "Touch", rule)
-    assert "Renew and RestFoot" in found(renew)["ambiguous"].message
-
-
 @pytest.mark.parametrize("apart", ['not fits(S, "Peck")', "not looking_at(head, table, 0, 1)"])
 def test_names_that_an_unjudged_condition_does_keep_apart_are_taken(tmp_path, apart):
     looking = "looking_at(head, table, 0, 1)"
@@ -152,10 +144,3 @@ def test_where_shipped_primitives_can_fit_is_stored_for_the_rules_as_they_are(na
     for predicate, worlds in (("fits", stored.fits), ("named", stored.named)):
         holds = {(row[1], row[0][1]) for each, row in atoms if each == predicate}
         assert holds == {(one, limb) for one, those in worlds.items() for limb in those & limbs}
-
-
-def test_rules_with_a_name_that_never_fits_are_not_called_clean(tmp_path):
-    path = written(tmp_path, "Odd", "Touch", 'feature_row("Odd", any, "101", "010", "00", "00").')
-    result = audit(profile("thesis", added=(path,)))
-    assert result.unreachable == ("Odd",)
-    assert not result.clean

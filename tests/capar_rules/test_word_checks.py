@@ -7,7 +7,7 @@ import pytest
 from capar_rules.lint.checker_process import Request, base_of
 from capar_rules.lint.checking import answer, check
 from capar_rules.lint.findings import ERROR, NOTE, Finding, errors
-from capar_rules.lint.word_checks import closed, slip_findings
+from capar_rules.lint.word_checks import slip_findings
 
 HEAD = '%* Nip: a slip. *%\nprimitive("Nip").\nspecialises("Nip", "Touch").\n'
 
@@ -79,15 +79,6 @@ def test_no_rule_that_ships_has_a_slip(profile):
     named = [each for each in base.rules if each.place.file.endswith(("naming.lp", "position.lp"))]
     others = [each for each in base.rules if each not in named]
     assert [str(each) for each in slip_findings(others, base)] == []
-
-
-def test_the_words_of_a_place_follow_from_the_rules():
-    words = closed(base_of("extended").rules)
-    assert words[("frame_at", 3), 1] == {"start", "end"}
-    assert '"onto"' in words[("preposition", 4), 1]
-    assert words[("segment", 3), 0] == {"seg("}
-    assert (("tick", 3), 0) not in words
-    assert (("object_at", 3), 2) not in words
 
 
 def test_words_of_ones_own_and_kinds_that_are_rare_are_no_errors(tmp_path):

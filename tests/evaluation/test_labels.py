@@ -24,16 +24,6 @@ def written(folder: Path, text: str, name: str = "labels.csv") -> Path:
     return path
 
 
-def test_seconds_are_read_as_they_are(tmp_path: Path) -> None:
-    text = "link,start_s,end_s,label,object\nleft,0.5,1.25,reach,mug\nleft,0,0.5,idle,\n"
-    labels = read_labels(written(tmp_path, text))
-    assert not labels.in_frames
-    assert labels.marks == (
-        Label("left", 0.0, 0.5, "idle"),
-        Label("left", 0.5, 1.25, "reach", "mug"),
-    )
-
-
 def test_frames_become_the_times_of_the_recording(tmp_path: Path) -> None:
     head = "hand,start_frame,end_frame,action_id,action,object_class_id,object\n"
     text = head + "right_hand,0,2,0,idle,None,None\nright_hand,2,4,1,approach,4,whisk_2\n"
@@ -44,13 +34,6 @@ def test_frames_become_the_times_of_the_recording(tmp_path: Path) -> None:
         Label("right_hand", 0.0, 0.5, "idle"),
         Label("right_hand", 0.5, 2.0, "approach", "whisk_2"),
     )
-
-
-def test_frames_that_the_recording_lacks_are_refused(tmp_path: Path) -> None:
-    text = "hand,start_frame,end_frame,action\nright_hand,0,900,idle\n"
-    labels = read_labels(written(tmp_path, text))
-    with pytest.raises(FileError, match="frames from 0 to 900 are marked, but the recording has"):
-        in_seconds(labels, np.arange(5.0))
 
 
 def test_the_json_of_the_bimanual_actions_is_read(tmp_path: Path) -> None:
@@ -94,13 +77,6 @@ def test_a_bad_file_is_refused_with_its_place(text: str, says: str, tmp_path: Pa
 
 def lenient(folder: Path, text: str) -> Labels:
     return read_labels(written(folder, text), contradictions=LEFT_OUT)
-
-
-def test_a_mark_that_ends_before_it_starts_can_be_left_out_with_a_notice(tmp_path: Path) -> None:
-    labels = lenient(tmp_path, "link,start_s,end_s,label\nl,0,2,a\nl,2,1,b\nl,2,3,c\n")
-    assert [each.label for each in labels.marks] == ["a", "c"]
-    (notice,) = labels.notices
-    assert "left out b of l from second 2 to 1: it ends before it starts" in notice
 
 
 def test_what_two_marks_claim_can_belong_to_neither_with_a_notice(tmp_path: Path) -> None:
@@ -225,13 +201,6 @@ def test_a_damaged_file_is_refused_by_name(name: str, text: str, says: str, tmp_
     with pytest.raises(FileError) as raised:
         read_labels(path)
     assert says in str(raised.value)
-
-
-def test_an_annotation_without_times_is_refused_with_its_line(tmp_path: Path) -> None:
-    path = elan(tmp_path, MARKS)
-    path.write_text(path.read_text().replace(' TIME_VALUE="400"', ""))
-    with pytest.raises(FileError, match=r"take\.eaf:\d+: annotation '\w+' .* has no time"):
-        read_labels(path)
 
 
 @settings(max_examples=30, deadline=None)

@@ -8,14 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from capar.evaluation.metrics import (
-    NOTHING,
     THRESHOLDS,
     Interval,
     accuracy,
     edit_score,
     frame_f1,
     frame_labels,
-    matches,
     merged,
     segment_f1,
     summed,
@@ -70,21 +68,6 @@ def test_the_hand_counted_edit_score() -> None:
     assert edit_score("", "") == 100.0
 
 
-def test_the_thresholds_are_reached_at_equality_and_not_below() -> None:
-    true = line(("a", 4.0), ("b", 96.0))
-    for length, hits in ((1.0, {10: 1, 25: 1, 50: 0}), (0.9, {10: 1, 25: 0, 50: 0})):
-        found = tally(true, [Interval(0.0, length, "a")], TIMES)
-        assert found.hits == Counter({each: hits[each] for each in THRESHOLDS})
-
-
-def test_a_true_segment_is_taken_once_and_by_the_first_that_reaches_it() -> None:
-    true = [Interval(0.0, 10.0, "a")]
-    guess = [Interval(0.0, 4.0, "a"), Interval(5.0, 10.0, "a")]
-    assert matches(true, guess, threshold=0.25) == ((0, 0),)
-    found = tally(true, guess, TIMES)
-    assert segment_f1(found, 25) == pytest.approx(100 * 2 / 3)
-
-
 def test_neighbours_of_one_label_are_one_segment() -> None:
     cut = line(("a", 1.0), ("a", 2.0), ("b", 1.0), ("a", 1.0))
     assert merged(cut) == (
@@ -96,12 +79,6 @@ def test_neighbours_of_one_label_are_one_segment() -> None:
         Interval(0.0, 1.0, "a"),
         Interval(2.0, 3.0, "a"),
     )
-
-
-def test_frames_without_a_label_are_not_counted_and_without_a_segment_are_wrong() -> None:
-    found = tally([Interval(0.0, 5.0, "a")], [Interval(2.0, 10.0, "a")], TIMES)
-    assert found.confusion == Counter({("a", "a"): 3, ("a", NOTHING): 2})
-    assert set(frame_f1(found.confusion)) == {"a"}
 
 
 def test_intervals_are_half_open_but_the_last_frame_closes_the_last() -> None:
@@ -136,20 +113,6 @@ def test_scores_are_percentages_and_f1_falls_with_the_threshold(
     assert values == sorted(values, reverse=True)
     for value in [*values, *found.edits, accuracy(found.confusion)]:
         assert 0.0 <= value <= 100.0
-
-
-@given(parts, parts)
-def test_renaming_labels_changes_no_score(
-    one: list[tuple[str, float]], other: list[tuple[str, float]]
-) -> None:
-    times = np.arange(0.5, 160.0)
-    names = dict(zip("abcd", "wxyz", strict=True))
-    renamed = [[(names[label], length) for label, length in each] for each in (one, other)]
-    before = tally(line(*one), line(*other), times)
-    after = tally(line(*renamed[0]), line(*renamed[1]), times)
-    assert before.hits == after.hits
-    assert before.edits == after.edits
-    assert accuracy(before.confusion) == accuracy(after.confusion)
 
 
 @given(st.lists(st.tuples(parts, parts), min_size=1, max_size=4))

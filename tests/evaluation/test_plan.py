@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from observations import drink_from_mug, with_unknown
+from observations import drink_from_mug
 
 from capar.evaluation import Kind
 from capar.evaluation.plan import (
@@ -14,7 +14,6 @@ from capar.evaluation.plan import (
     read_pairs,
     read_plan,
 )
-from capar.evaluation.scoring import known_names
 from capar.model.errors import CaparError, UnknownNameError
 from capar.model.observation import Observation
 
@@ -39,16 +38,6 @@ def test_a_pattern_stands_for_each_take_that_fits(bundle: Path) -> None:
         ("take0", "labels/take0.csv"),
         ("take1", "labels/take1.csv"),
     ]
-
-
-def test_one_label_file_for_several_takes_is_refused(bundle: Path) -> None:
-    with pytest.raises(CaparError, match="is one label file for 2 takes"):
-        read_pairs([f"{bundle}:take*", "labels.csv"])
-
-
-def test_a_pattern_that_no_take_fits_lists_the_takes(bundle: Path) -> None:
-    with pytest.raises(CaparError, match="no take 'y\\*'; there are: take0, take1, x1"):
-        read_pairs([f"{bundle}:y*", "{take}.csv"])
 
 
 def test_an_evaluation_file_names_takes_groups_and_labels_beside_itself(bundle: Path) -> None:
@@ -95,20 +84,6 @@ def labels(seen: Observation, given: LabelMapping) -> list[str]:
     return [each.label for each in labelled(seen.links[0], given)]
 
 
-def test_the_first_rule_that_fits_gives_the_label(tmp_path: Path) -> None:
-    text = rule(name="MoveObjTo", object="mouth", label="bring") + rule(
-        name="MoveObjTo", label="place"
-    )
-    assert labels(drink_from_mug(), mapping(tmp_path, text + REST)) == [
-        "rest",
-        "bring",
-        "rest",
-        "place",
-        "rest",
-        "rest",
-    ]
-
-
 @pytest.mark.parametrize(
     ("conditions", "fits"),
     [
@@ -139,11 +114,6 @@ def test_a_segment_that_no_rule_fits_is_named_with_the_rules_there_are(tmp_path:
     assert raised.value.known == ["Reach"]
 
 
-def test_unknown_segments_are_mapped_by_that_name(tmp_path: Path) -> None:
-    text = rule(name="Unknown", label="odd") + REST
-    assert labels(with_unknown(), mapping(tmp_path, text)) == ["rest", "odd"]
-
-
 @pytest.mark.parametrize(
     ("conditions", "says"),
     [
@@ -159,18 +129,6 @@ def test_a_name_that_does_not_exist_is_refused_with_those_that_do(
     with pytest.raises(UnknownNameError) as raised:
         check_names(given, names=["Reach", "Touch"], objects=["mug"], labels=["a"])
     assert says in str(raised.value)
-
-
-def test_a_label_in_no_label_file_is_a_notice_with_its_line(tmp_path: Path) -> None:
-    given = mapping(tmp_path, rule(name="Reach", label="b") + rule(name="Touch", label="b"))
-    (notice,) = check_names(given, names=["Reach", "Touch"], objects=[], labels=["a"])
-    assert notice.endswith("mapping.toml:2: the label 'b' is in no label file")
-
-
-def test_the_names_of_the_rules_that_ship_are_known_even_if_not_observed() -> None:
-    assert {"Reach", "Hit", "Touch", "TouchWith", "MoveObj", "MoveObjTo", "ResumePosture"} <= (
-        known_names([])
-    )
 
 
 @pytest.mark.parametrize(

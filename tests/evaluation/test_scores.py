@@ -10,32 +10,27 @@ from hypothesis import strategies as st
 from measured_bodies import box, pick_and_place
 from motion_files import recordings_folder
 from observations import drink_from_mug, pick_up_with_both_hands
-from typer.testing import CliRunner
 
-from capar.cli import app
-from capar.evaluation import Kind
 from capar.evaluation.contacts import ContactCounts, compare_contacts, read_contact_arrays
 from capar.evaluation.events import OVER_TABLE, PASS, REGRASP, Event, EventCounts, compare_events
 from capar.evaluation.labels import Label, Labels
-from capar.evaluation.metrics import Interval, report, summed
+from capar.evaluation.metrics import report, summed
 from capar.evaluation.objects import (
-    Landing,
     carry_captures,
     compare_carries,
-    count_landings,
     halved,
     landings,
     printed_carries,
 )
-from capar.evaluation.plan import CarryOptions, ContactArrays, LabelMapping, Plan, Rule, read_plan
+from capar.evaluation.plan import CarryOptions, ContactArrays, LabelMapping, Rule, read_plan
 from capar.evaluation.scoring import Case, compare, evaluate
 from capar.model.capture import Capture, ShapeSource
-from capar.model.errors import CaparError, UnknownNameError
+from capar.model.errors import UnknownNameError
 from capar.model.facts import Touching
 from capar.model.geometry import runs
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
-from extractors.readers.bundle.capture_toml import read_capture, takes
+from extractors.readers.bundle.capture_toml import read_capture
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 BOXED = EXAMPLES / "boxed_vr"
@@ -98,12 +93,6 @@ def test_labels_of_a_link_that_was_not_observed_are_refused() -> None:
     assert "labels.csv" in str(raised.value)
 
 
-def test_an_odd_number_of_arguments_says_how_to_pair_them() -> None:
-    result = CliRunner().invoke(app, ["evaluate", "one", "--mapping", "m.toml"])
-    assert isinstance(result.exception, CaparError)
-    assert "each capture is followed by its label file" in str(result.exception)
-
-
 def test_each_hand_agrees_with_its_labels(data: None) -> None:
     """Takes 0 to 4 were developed on, takes 5 to 9 kept apart."""
     found = scored("bimacs_optitrack/evaluation.toml")
@@ -127,16 +116,6 @@ def placed() -> tuple[Capture, str]:
     return capture, thing
 
 
-def test_a_carry_lasts_from_the_first_moving_segment_to_the_last_of_one_run() -> None:
-    """Out of the mug's moves to the mouth and back, with a sip between, one carry is made."""
-    seen = drink_from_mug()
-    moves = [each for each in seen.segments if {each.name, *each.general} & set(MOVES)]
-    assert len(moves) > 1
-    assert printed_carries(seen.segments, MOVES) == (
-        Interval(moves[0].start_s, moves[-1].end_s, "carry"),
-    )
-
-
 def test_labels_at_the_printed_ends_are_found_at_both(placed: tuple[Capture, str]) -> None:
     capture, thing = placed
     seen = observe(capture)
@@ -148,19 +127,6 @@ def test_labels_at_the_printed_ends_are_found_at_both(placed: tuple[Capture, str
         assert (scores["start"], scores["end"], scores["both"]) == (share, share, share)
         assert scores["start_ms"]["bias"] == pytest.approx(1000 * late_s, abs=0.01)
         assert scores["end_ms"]["bias"] == pytest.approx(-1000 * late_s, abs=0.01)
-
-
-def test_what_does_not_move_in_its_carry_is_excluded_and_counted(
-    placed: tuple[Capture, str],
-) -> None:
-    capture, thing = placed
-    seen = observe(capture)
-    scores = compare_carries(
-        "take", labels(thing, (0.0, 0.05)), seen, capture, CarryOptions()
-    ).whole.scores()
-    assert (scores["carries"], scores["excluded"], scores["counted"]) == (1, 1, 0)
-    assert scores["both"] is None
-    assert scores["extra"] == 1
 
 
 def test_where_samples_begin_and_end_tells_nothing(data: None) -> None:
@@ -250,15 +216,6 @@ def test_the_whole_is_whether_any_body_touches(
     assert got.right + got.wrong + got.missed + got.apart == FRAMES
 
 
-@given(hands, hands, st.integers(0, 50))
-def test_another_origin_of_time_changes_no_count(
-    true: tuple[np.ndarray, ...], found: tuple[np.ndarray, ...], seconds: int
-) -> None:
-    here, there = counts(true, found), counts(true, found, float(seconds))
-    assert (here.right, here.wrong, here.missed) == (there.right, there.wrong, there.missed)
-    assert np.allclose(here.onsets_s, there.onsets_s)
-
-
 @given(st.lists(st.tuples(hands, hands), min_size=1, max_size=4))
 def test_pooled_scores_are_those_of_all_frames_together(takes: list) -> None:
     every = [counts(true, found) for true, found in takes]
@@ -276,16 +233,6 @@ def test_what_the_labels_leave_open_counts_neither_way(
     marks = of_contact(everything, sure=False)
     got = compare_contacts("take", marks, facts(found), clock(), PAIRS).whole
     assert (got.right, got.wrong, got.missed, got.apart) == (0, 0, 0, 0)
-
-
-def test_labels_of_one_hand_count_that_hand_alone() -> None:
-    both = facts((np.arange(FRAMES) < 10, np.arange(FRAMES) >= 20))
-    mark = Label("right_hand", 0.4, 0.8, "contact", "mug")
-    scored = compare_contacts(
-        "take", Labels(Path("l.csv"), (mark,), in_frames=False), both, clock()
-    )
-    assert set(scored.parts) == {"right_hand"}
-    assert scored.whole.scores()["f1"] == 100.0
 
 
 def arrays(folder: Path, values: np.ndarray) -> Path:
@@ -313,12 +260,6 @@ def test_arrays_of_contact_become_intervals_with_the_names_of_sensors(tmp_path: 
     assert pairs == (("l_hand", "mug"), ("r_hand", "mug"))
 
 
-def test_arrays_of_another_length_are_refused(tmp_path: Path) -> None:
-    path = arrays(tmp_path, np.zeros((5, 2)))
-    with pytest.raises(CaparError, match=r"has the shape \(5, 2\)\. For 3 frames and 2 bodies"):
-        read_contact_arrays(path, ENTRY, {"object": "mug"}, np.array([0.0, 0.1, 0.2]))
-
-
 def test_bodies_touch_a_carried_table_when_the_labels_say_so(data: None) -> None:
     """Two of the sixteen clips that the evaluation file beside the example scores."""
     plan = read_plan(
@@ -339,12 +280,6 @@ def test_two_halves_fill_the_box_that_they_part() -> None:
     assert np.allclose(bounds[0][1, 1], bounds[1][0, 1])
     assert np.allclose([bounds[0][0], bounds[1][1]], box(1.0, 1.2, 0.04).bounds)
     assert all(each.assumed for each in halves)
-
-
-def test_groceries_go_into_the_box_where_they_are_found_in_the_end(data: None) -> None:
-    found = landings(_with_assumed_carton("p78_s1"), ["carton"])
-    assert sum(each.true for each in found) == 10
-    assert all(each.reported and each.true for each in found)
 
 
 def _with_assumed_carton(take: str) -> Capture:
@@ -368,32 +303,6 @@ def test_what_is_put_into_one_half_of_the_box_is_not_put_into_the_other(data: No
     assert not [each for each in wrong if each.reported]
 
 
-def test_objects_without_a_mesh_are_counted_and_left_out(data: None) -> None:
-    assert len(takes(BOXED / "scenes.toml")) == 16
-    capture = read_capture(f"{BOXED}/scenes.toml:p1_s1")
-    (notice,) = [each for each in capture.notices if each.code == "objects-left-out"]
-    assert notice.message.startswith("7 of 23 objects have no shape and are left out: ")
-    assert sum(each.tag == "mobile" for each in capture.objects) == 16
-    assert not [each for each in capture.objects if each.shape is None]
-
-
-def test_landings_are_counted_by_what_is_told_and_what_is_true() -> None:
-    found = [
-        Landing("a", "box", told, true)
-        for told, true, times in (
-            (True, True, 3),
-            (True, False, 1),
-            (False, True, 2),
-            (False, False, 4),
-        )
-        for _ in range(times)
-    ]
-    scores = count_landings(found).scores()
-    assert (scores["objects"], scores["right"], scores["accuracy"]) == (10, 7, 70.0)
-    assert (scores["went_in"], scores["told"]) == (5, 4)
-    assert (scores["told_wrongly"], scores["untold"]) == (1, 2)
-
-
 def test_a_scene_is_scored_by_its_evaluation_file(data: None) -> None:
     """One object lies in the box from the beginning, and one ends above its rim."""
     _with_assumed_carton("p76_s1")
@@ -402,11 +311,6 @@ def test_a_scene_is_scored_by_its_evaluation_file(data: None) -> None:
     assert (found["all"]["objects"], found["all"]["right"]) == (12, 12)
     assert (found["all"]["went_in"], found["all"]["told"]) == (10, 10)
     assert any("have no shape and are left out" in each for each in found["notices"])
-
-
-def test_containers_are_named_in_an_evaluation_file() -> None:
-    with pytest.raises(CaparError, match="containers are named in an evaluation file"):
-        Plan(Kind.CONTAINERS, ())
 
 
 def seen(start_s: float, end_s: float, *, sure: bool = True, other: str = "") -> Label:
@@ -431,15 +335,6 @@ def test_each_is_paired_once_and_with_the_nearest() -> None:
     assert (got.seen, got.found, got.open, got.extra) == (2, 1, 1, 2)
 
 
-def test_an_event_with_another_object_is_none() -> None:
-    assert (
-        compared([seen(1.0, 1.5, other="mug")], [found(1.0, 1.5, "right_hand", "cup")]).found == 0
-    )
-    assert (
-        compared([seen(1.0, 1.5, other="mug")], [found(1.0, 1.5, "right_hand", "mug")]).found == 1
-    )
-
-
 # Eighths of a second, which no sum rounds.
 spans = st.lists(
     st.tuples(st.integers(0, 400), st.integers(0, 20)).map(
@@ -448,13 +343,6 @@ spans = st.lists(
     max_size=8,
     unique=True,
 )
-
-
-@given(spans)
-def test_what_was_seen_exactly_so_is_all_found(marks: list[tuple[float, float]]) -> None:
-    got = compared([seen(*each) for each in marks], [found(*each) for each in marks])
-    assert (got.found, got.extra) == (len(marks), 0)
-    assert got.scores()["f1"] == (100.0 if marks else None)
 
 
 @given(spans, spans)
