@@ -24,7 +24,14 @@ from extractors.readers.bundle.capture_toml import read_capture, takes
 STEP = re.compile(r"([A-Z]\w*)(?:\(([^()]*)\))?")
 """A step of a claim, such as ``MoveObjTo(mug, head)``: its name, then its objects."""
 
-RELATIONS = ("begins before", "ends before", "before", "after", "while")
+RELATIONS: Mapping[str, Callable[["Span", "Span"], bool]] = {
+    "begins before": lambda one, other: one[0] < other[0],
+    "ends before": lambda one, other: one[1] < other[1],
+    "before": lambda one, other: one[1] <= other[0],
+    "after": lambda one, other: one[0] >= other[1],
+    "while": lambda one, other: one[0] < other[1] and other[0] < one[1],
+}
+"""Relations of two times, those first whose name contains another's."""
 
 HELP = (
     "a claim is EVENT; no EVENT; EVENT before EVENT (or after, while, begins before, ends before); "
@@ -195,20 +202,10 @@ def _judged(claim: str, scene: _Scene) -> tuple[bool, str]:
         first, word, second = claim.partition(f" {relation} ")
         if word:
             one, other = list(_event(first, scene)), list(_event(second, scene))
-            holds = any(_stand(each, relation, every) for each in one for every in other)
+            holds = any(RELATIONS[relation](a, b) for a in one for b in other)
             return holds, f"{first}: {_shown(one)}; {second}: {_shown(other)}"
     spans = list(_event(claim, scene))
     return bool(spans), _shown(spans)
-
-
-def _stand(one: Span, relation: str, other: Span) -> bool:
-    return {
-        "before": one[1] <= other[0],
-        "after": one[0] >= other[1],
-        "while": one[0] < other[1] and other[0] < one[1],
-        "begins before": one[0] < other[0],
-        "ends before": one[1] < other[1],
-    }[relation]
 
 
 def _sequence(ee: str, names: str, scene: _Scene) -> tuple[bool, str]:
@@ -337,7 +334,12 @@ def read_motion_test(path: Path) -> MotionTest:
     Raises:
         FileError: It cannot be read, says something unknown, or names no capture that there is.
     """
-    content = _content(path)
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise FileError(path, f"cannot be read: {error.strerror}.", _EXAMPLE) from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise FileError(path, f"is no TOML: {error}.", _EXAMPLE) from None
     unknown = sorted(set(content) - {"captures", "expect", "profile", "rules"})
     if unknown:
         raise FileError(path, f"unknown key {unknown[0]!r}.", _EXAMPLE)
@@ -375,24 +377,21 @@ def run_motion_test(
         CaparError: The rules have a fault, or there is no such profile.
     """
     files = user_rules(test.rules or rules, actionary=actionary)
-    base = _base(test.profile, files)
+    base = admitted(test.profile, files)
     for capture in test.captures:
         for claim in test.claims:
-            yield _verdict(claim, capture, base)
-
-
-def _verdict(claim: str, capture: str, base: Profile) -> Verdict:
-    name = Path(capture).name
-    try:
-        seen, names = _observed(capture, base)
-        name = seen.capture
-        return judge(claim, seen, names=names)
-    except (CaparError, OSError) as error:
-        return Verdict(claim, name, holds=False, found="", mistake=str(error))
+            name = Path(capture).name
+            try:
+                seen, names = _observed(capture, base)
+                name = seen.capture
+                yield judge(claim, seen, names=names)
+            except (CaparError, OSError) as error:
+                yield Verdict(claim, name, holds=False, found="", mistake=str(error))
 
 
 @cache
-def _base(name: str, added: tuple[Path, ...]) -> Profile:
+def admitted(name: str, added: tuple[Path, ...]) -> Profile:
+    """A profile with rule files of users, checked once."""
     return admitted_profile(name, added=added)
 
 
@@ -406,15 +405,6 @@ def _observed(capture: str, base: Profile) -> tuple[Observation, Names]:
     )
     seen = observe(trial, rules=base)
     return seen, names_of(seen, rules=base, sensors=looking)
-
-
-def _content(path: Path) -> dict[str, object]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FileError(path, f"cannot be read: {error.strerror}.", _EXAMPLE) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise FileError(path, f"is no TOML: {error}.", _EXAMPLE) from None
 
 
 def _captures(path: Path, patterns: Sequence[str]) -> Iterator[str]:
@@ -431,7 +421,13 @@ def _places(folder: Path, pattern: str) -> list[Path]:
     """Captures that a pattern means, from that folder on or, absolute, from the root."""
     # Path.glob refuses absolute patterns.
     found = glob(pattern, root_dir=folder, recursive=True, include_hidden=True)  # noqa: PTH207
-    return [folder / each for each in sorted(found) if _is_capture(folder / each)]
+    paths = [folder / each for each in sorted(found)]
+    return [
+        path
+        for path in paths
+        if (path / "capture.toml").is_file()
+        or (path.is_file() and path.suffix == ".toml" and not path.name.endswith(SUFFIX))
+    ]
 
 
 def _takes(path: Path, pattern: str) -> list[str]:
@@ -450,9 +446,3 @@ def _takes(path: Path, pattern: str) -> list[str]:
         there = f"Its takes are: {names}." if names else "It is one capture without takes."
         raise FileError(path, f"no take matches {pattern!r}.", there)
     return found
-
-
-def _is_capture(path: Path) -> bool:
-    if path.is_file():
-        return path.suffix == ".toml" and not path.name.endswith(SUFFIX)
-    return (path / "capture.toml").is_file()

@@ -9,7 +9,6 @@ import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -168,10 +167,20 @@ def agreed(
     if not every:
         raise FileError(path, "marks nothing.", "A label file has at least one mark.")
     unit = "frame" if in_frames else "second"
+    groups: dict[object, list[Label]] = {}
+    for each in every:  # marks of a group exclude each other in time
+        key = {
+            Kind.ACTIONS: each.link,
+            Kind.CONTACTS: (each.link, each.object),
+            Kind.CARRIES: each.object,
+            Kind.EVENTS: id(each),
+        }[kind]
+        groups.setdefault(key, []).append(each)
     out: list[Label] = []
     notices: list[str] = []
-    for group in _channels(every, kind):
-        kept, said = _consistent(path, group, unit, strict=contradictions == Contradictions.REFUSE)
+    strict = contradictions == Contradictions.REFUSE
+    for group in groups.values():
+        kept, said = _consistent(path, group, unit, strict=strict)
         out += kept
         notices += said
     return Labels(path, tuple(sorted(out)), in_frames, tuple(notices))
@@ -184,20 +193,6 @@ def shown(mark: Label, unit: str) -> str:
     return f"{mark.label} of {about} from {unit} {mark.start:g} to {mark.end:g}"
 
 
-def _channels(marks: list[Label], kind: Kind) -> list[list[Label]]:
-    """Marks that exclude each other in time, together; events exclude none."""
-    key = {
-        Kind.ACTIONS: lambda mark: mark.link,
-        Kind.CONTACTS: lambda mark: (mark.link, mark.object),
-        Kind.CARRIES: lambda mark: mark.object,
-        Kind.EVENTS: id,
-    }[kind]
-    groups: dict[object, list[Label]] = {}
-    for each in marks:
-        groups.setdefault(key(each), []).append(each)
-    return list(groups.values())
-
-
 def _consistent(
     path: Path, marks: list[Label], unit: str, *, strict: bool
 ) -> tuple[list[Label], list[str]]:
@@ -205,14 +200,21 @@ def _consistent(
     out: list[Label] = []
     notices: list[str] = []
     claim: Label | None = None
+
+    def refuse(mark: Label, problem: str) -> None:
+        if strict:
+            remedy = "Correct it, or leave such marks out: --contradictions leave-out."
+            raise FileError(mark.where or path, problem, remedy)
+
     for each in sorted(marks, key=lambda mark: (mark.start, mark.end)):
         if each.end < each.start:
-            _refuse(each, f"{shown(each, unit)} ends before it starts.", path, strict=strict)
+            refuse(each, f"{shown(each, unit)} ends before it starts.")
             notices.append(f"{path}: left out {shown(each, unit)}: it ends before it starts")
             continue
         if claim is not None and each.start < claim.end:
             both = f"{shown(each, unit)} and {shown(claim, unit)} overlap"
-            _refuse(each, f"{both}{_line(claim)}.", path, strict=strict)
+            line = claim.where.rpartition(":")[2]
+            refuse(each, f"{both} (the other in line {line})." if line.isdigit() else f"{both}.")
             notices.append(f"{path}: {both}; what both claim is not counted")
             out[-1] = replace(out[-1], end=min(out[-1].end, each.start))
             out.append(replace(each, start=min(claim.end, each.end)))
@@ -220,18 +222,6 @@ def _consistent(
             out.append(each)
         claim = each if claim is None else max(claim, each, key=lambda mark: mark.end)
     return out, notices
-
-
-def _refuse(mark: Label, problem: str, path: Path, *, strict: bool) -> None:
-    if strict:
-        remedy = "Correct it, or leave such marks out: --contradictions leave-out."
-        raise FileError(mark.where or path, problem, remedy)
-
-
-def _line(mark: Label) -> str:
-    """The line of the other mark."""
-    _, _, line = mark.where.rpartition(":")
-    return f" (the other in line {line})" if line.isdigit() else ""
 
 
 def _after_last(times: Float[np.ndarray, "frames"]) -> float:
@@ -305,44 +295,30 @@ def read_labels(
             another; the message has the line.
     """
     suffix = path.suffix.lower()
-    if suffix == ".textgrid":
-        marks, in_frames = _annotated(read_praat(path), kind), False
-    elif suffix == ".eaf":
-        marks, in_frames = _annotated(read_elan(path), kind), False
+    in_frames = False
+    if suffix in READERS:
+        marks = _annotated(READERS[suffix](path), kind)
     else:
-        marks, in_frames = _text(path, read_text(path), kind)
+        text = read_text(path)
+        opening = text.lstrip()[:1]
+        if opening == "{" and kind is Kind.ACTIONS:
+            marks, in_frames = _bimacts(path, text), True
+        elif opening in {"[", "{"}:
+            marks, in_frames = _rows(path, list(_json_rows(path, text)), kind)
+        else:
+            lines = enumerate(text.splitlines(), 1)
+            kept = [(n, line) for n, line in lines if line.strip() and not line.startswith("#")]
+            header = next(csv.reader([kept[0][1]]), []) if kept else []
+            rows = [
+                (n, dict(zip(header, next(csv.reader([line])), strict=False)))
+                for n, line in kept[1:]
+            ]
+            marks, in_frames = _rows(path, rows, kind, header)
     return agreed(path, marks, in_frames=in_frames, kind=kind, contradictions=contradictions)
-
-
-def _text(path: Path, text: str, kind: Kind) -> tuple[list[Label], bool]:
-    opening = text.lstrip()[:1]
-    if opening == "{" and kind is Kind.ACTIONS:
-        return _bimacts(path, text), True
-    if opening in {"[", "{"}:
-        return _rows(path, list(_json_rows(path, text)), kind)
-    return _rows(path, list(_csv_rows(text)), kind, _header(text))
 
 
 Row = tuple[int, Mapping[str, str]]
 """A line's number, and the values by column."""
-
-
-def _header(text: str) -> Sequence[str]:
-    lines = [line for line in text.splitlines() if not line.startswith("#")]
-    return next(csv.reader(lines), [])
-
-
-def _csv_rows(text: str) -> Iterator[Row]:
-    """The rows of a CSV; lines that begin with # are left out, and counted."""
-    header: list[str] | None = None
-    for number, line in enumerate(text.splitlines(), 1):
-        if line.startswith("#") or not line.strip():
-            continue
-        values = next(csv.reader(StringIO(line)))
-        if header is None:
-            header = values
-            continue
-        yield number, dict(zip(header, values, strict=False))
 
 
 def _json_rows(path: Path, text: str) -> Iterator[Row]:
@@ -405,21 +381,18 @@ def _mark(place: str, row: Mapping[str, str], columns: Columns, times: tuple[str
     for needed in columns.needed:
         if needed != "label" and value(getattr(columns, needed)) in UNNAMED:
             raise FileError(place, f"has no {getattr(columns, needed)[0]}.")
+    sure = (row.get("sure") or "").strip()
+    if sure.lower() not in SURE | UNSURE:
+        raise FileError(place, f"sure is {sure!r}.", "Write yes or no.")
     return Label(
         link=value(columns.link),
         start=_number(place, (row.get(times[0]) or "").strip()),
         end=_number(place, (row.get(times[1]) or "").strip()),
         label=columns.constant or value(columns.label),
         object="" if thing in UNNAMED else thing,
-        sure=_sure(place, (row.get("sure") or "").strip()),
+        sure=sure.lower() in SURE,
         where=place,
     )
-
-
-def _sure(place: str, text: str) -> bool:
-    if text.lower() not in SURE | UNSURE:
-        raise FileError(place, f"sure is {text!r}.", "Write yes or no.")
-    return text.lower() in SURE
 
 
 def _number(place: str, text: str) -> float:
@@ -451,33 +424,23 @@ def _annotated(found: Sequence[Annotation], kind: Kind) -> list[Label]:
 
 
 def _bimacts(path: Path, text: str) -> list[Label]:
+    out = []
     try:
         content: dict[str, list[Any]] = json.loads(text)
-        return [
-            each
-            for link, marks in content.items()
-            for each in _alternating(link, marks, f"{path}:{_line_of(text, link)}")
-        ]
+        for link, marks in content.items():
+            line = text.count("\n", 0, max(text.find(json.dumps(link)), 0)) + 1
+            for start, action, end in zip(marks[:-1:2], marks[1::2], marks[2::2], strict=True):
+                number, _, held = action
+                if number is not None:
+                    name, where = BIMACTS[number], f"{path}:{line}"
+                    label = Label(link, float(start), float(end), name, str(held or ""))
+                    out.append(replace(label, where=where))
     except (ValueError, TypeError, IndexError, AttributeError, RecursionError) as error:
         raise FileError(
             path,
             f"is no label file of the KIT Bimanual Actions Dataset: {error}.",
             'It reads {"right_hand": [0, [action, class, object], 98, ..., last frame]}.',
         ) from None
-
-
-def _line_of(text: str, link: str) -> int:
-    return text.count("\n", 0, max(text.find(json.dumps(link)), 0)) + 1
-
-
-def _alternating(link: str, marks: list[Any], where: str) -> list[Label]:
-    """Marks from a list that alternates frames and actions."""
-    out = []
-    for start, action, end in zip(marks[:-1:2], marks[1::2], marks[2::2], strict=True):
-        number, _, thing = action
-        if number is not None:
-            label = BIMACTS[number]
-            out.append(Label(link, float(start), float(end), label, str(thing or ""), where=where))
     return out
 
 
@@ -561,3 +524,10 @@ def _quietly(path: Path, read: Callable[[], Any], remedy: str) -> Any:
     except Exception as error:  # pympi raises Exception itself, and whatever bytes make of it
         kind = type(error).__name__
         raise FileError(path, f"cannot be read to its end ({kind}: {error}).", remedy) from None
+
+
+READERS: Mapping[str, Callable[[Path], list[Annotation]]] = {
+    ".textgrid": read_praat,
+    ".eaf": read_elan,
+}
+"""By suffix, in lower case."""

@@ -1,12 +1,12 @@
 """Carries and containers: what happens to objects, compared with labels or with their own poses."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
 
 from capar.evaluation.labels import Label, Labels, check_known, check_span
 from capar.evaluation.metrics import (
@@ -245,12 +245,18 @@ def _carry(
     hand = replace(scene.sensor(options.hand), stream=stream)
     known = next((each for each in scene.objects if each.name == name), None)
     thing = replace(known, stream=stream) if known else TagObject(name, TagType.MOBILE, stream)
+    fixed = []
+    for each in (one for one in scene.objects if one.tag is TagType.FIXED):
+        first = int(np.argmax(~each.stream.lost))
+        place, turn = each.stream.positions[[first]], each.stream.orientations[[first]]
+        still = [np.repeat(one, len(times), axis=0) for one in (place, turn)]
+        fixed.append(replace(each, stream=Stream(times, *still)))
     pair = {hand.name, name}
     pivots = tuple(each for each in scene.pivot_contacts if {each.first, each.second} == pair)
     capture = Capture(
         name=f"{scene.name}_{name}",
         sensors=(hand,),
-        objects=(*_fixed(scene, times), thing),
+        objects=(*fixed, thing),
         agent=scene.agent,
         contact_tolerance_m=scene.contact_tolerance_m,
         contact_dropout_s=scene.contact_dropout_s,
@@ -258,19 +264,6 @@ def _carry(
         pivot_contacts=pivots or (PivotContact(hand.name, name, TOUCHES_M),),
     )
     return capture, Label("", begin - zero, finish - zero, CARRY, name)
-
-
-def _fixed(scene: Capture, times: np.ndarray) -> Iterator[TagObject]:
-    """The fixed objects, where they are in the scene, on another clock."""
-    for thing in scene.objects:
-        if thing.tag is TagType.FIXED:
-            frame = int(np.argmax(~thing.stream.lost))
-            still = Stream(
-                times,
-                np.repeat(thing.stream.positions[[frame]], len(times), axis=0),
-                np.repeat(thing.stream.orientations[[frame]], len(times), axis=0),
-            )
-            yield replace(thing, stream=still)
 
 
 @dataclass(frozen=True, slots=True)
@@ -329,7 +322,13 @@ def score_containers(pair: Pair, plan: Plan, base: Profile) -> Scored:
     for name in plan.containers.names:
         whole, names = halved(capture, name) if plan.containers.halves else (capture, (name,))
         found = landings(whole, names, rules=base)
-        parts[name] = count_landings(found)
+        count = Counter((each.reported, each.true) for each in found)
+        parts[name] = LandingCounts(
+            told_in=count[True, True],
+            told_wrongly=count[True, False],
+            untold=count[False, True],
+            out=count[False, False],
+        )
         for each in found:
             if each.reported != each.true:
                 true = "went" if each.true else "did not go"
@@ -368,18 +367,6 @@ def landings(
     return tuple(out)
 
 
-def count_landings(found: Iterable[Landing]) -> LandingCounts:
-    """The counts of landings."""
-    fields: Mapping[tuple[bool, bool], str] = {
-        (True, True): "told_in",
-        (True, False): "told_wrongly",
-        (False, True): "untold",
-        (False, False): "out",
-    }
-    counts = (LandingCounts(**{fields[each.reported, each.true]: 1}) for each in found)
-    return sum(counts, LandingCounts())
-
-
 def halved(capture: Capture, container: str) -> tuple[Capture, tuple[str, str]]:
     """The capture with its container parted across the middle of its longest level side.
 
@@ -406,16 +393,13 @@ def halved(capture: Capture, container: str) -> tuple[Capture, tuple[str, str]]:
     return replace(capture, objects=(*others, *halves)), (halves[0].name, halves[1].name)
 
 
-def _inside(thing: TagObject, frame: int, container: TagObject) -> bool:
+def _inside(item: TagObject, frame: int, container: TagObject) -> bool:
     """Whether the middle of an object's box lies in the container's, which stands level."""
-    low, high = _box(container, frame)
-    first, last = _box(thing, frame)
+    corners = []
+    for each in (container, item):
+        assert each.shape is not None
+        points = each.stream.pose(frame).apply(np.array(each.shape.vertices))
+        corners.append((points.min(axis=0), points.max(axis=0)))
+    (low, high), (first, last) = corners
     middle = (first + last) / 2.0
     return bool(((middle >= low) & (middle <= high)).all())
-
-
-def _box(thing: TagObject, frame: int) -> Float[np.ndarray, "2 3"]:
-    """Lowest and highest corner along the world's axes [m]."""
-    assert thing.shape is not None
-    points = thing.stream.pose(frame).apply(np.array(thing.shape.vertices))
-    return np.stack([points.min(axis=0), points.max(axis=0)])

@@ -54,26 +54,11 @@ ANY = "*"
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
-    """Which segments bear a label; an empty or missing condition fits all."""
-
-    name: str
-    label: str
-    object: str = ""
-    dominant: str = ""
-    position: str = ""
-    previous: str | None = None
-    next: str | None = None
-    where: str = ""
-    """File and line."""
-
-
-@dataclass(frozen=True, slots=True)
 class LabelMapping:
     """Rules in order, and names of links."""
 
     path: Path
-    rules: tuple[Rule, ...]
+    rules: tuple[MappingRule, ...]
     links: Mapping[str, str]
     """Of the label file, by ours, where they differ."""
 
@@ -98,17 +83,7 @@ def read_mapping(path: Path) -> LabelMapping:
     table = validated(MappingFile, *read_toml(path))
     if not table.rule:
         raise FileError(path, "has no rule.", 'Write [[rule]], name = "Reach", label = "approach".')
-    rules = tuple(Rule(**dict(each), where=each.where("name")) for each in table.rule)
-    return LabelMapping(path, rules, table.links, tuple(table.others))
-
-
-def own_names(names: Iterable[str]) -> LabelMapping:
-    """The mapping of labels that are our own names, as those of ``capar correct --labels``.
-
-    Args:
-        names: What segments can be called, and what else the labels may say.
-    """
-    return LabelMapping(Path(), (), {}, tuple(names), own_names=True)
+    return LabelMapping(path, tuple(table.rule), table.links, tuple(table.others))
 
 
 def known_names(observations: Sequence[Observation], base: Profile | None = None) -> set[str]:
@@ -145,65 +120,55 @@ def check_names(
     notices: dict[str, str] = {}
     for rule in mapping.rules:
         if rule.label not in occur:
-            text = f"{rule.where}: the label {rule.label!r} is in no label file"
+            text = f"{rule.where('name')}: the label {rule.label!r} is in no label file"
             notices.setdefault(rule.label, text)
         wanted = [("action", rule.name)]
         wanted += [("action", each) for each in (rule.previous, rule.next) if each]
         wanted += [("object", each) for each in (rule.object, rule.dominant) if each]
         for kind, name in wanted:
             if name not in known[kind]:
-                raise UnknownNameError(kind, name, known[kind], where=rule.where)
+                raise UnknownNameError(kind, name, known[kind], where=rule.where("name"))
     return tuple(notices.values())
 
 
 def labelled(link: ObservedLink, mapping: LabelMapping) -> tuple[Interval, ...]:
     """The segments of a link, with the times that are printed, under the labels of the rules.
 
-    Args:
-        link: The segments.
-        mapping: The rules.
-
     Raises:
         UnknownNameError: No rule fits a segment; it lists the names that have rules.
     """
-    return tuple(
-        Interval(each.start_s, each.end_s, _label(link.segments, index, mapping))
-        for index, each in enumerate(link.segments)
-    )
+    found = []
+    for index, each in enumerate(link.segments):
+        fitting = (rule.label for rule in mapping.rules if _fits(rule, link.segments, index))
+        label = each.name if mapping.own_names else next(fitting, None)
+        if label is None:
+            place = f"{mapping.path}: {each.ee} from {each.start_s:.2f} s"
+            names = {rule.name for rule in mapping.rules}
+            raise UnknownNameError("fitting rule for", each.name, names, where=place)
+        found.append(Interval(each.start_s, each.end_s, label))
+    return tuple(found)
 
 
-def _label(segments: Sequence[Segment], index: int, mapping: LabelMapping) -> str:
-    if mapping.own_names:
-        return segments[index].name
-    for rule in mapping.rules:
-        if _fits(rule, segments, index):
-            return rule.label
-    segment = segments[index]
-    place = f"{mapping.path}: {segment.ee} from {segment.start_s:.2f} s"
-    ruled = {each.name for each in mapping.rules}
-    raise UnknownNameError("fitting rule for", segment.name, ruled, where=place)
-
-
-def _fits(rule: Rule, segments: Sequence[Segment], index: int) -> bool:
+def _fits(rule: MappingRule, segments: Sequence[Segment], index: int) -> bool:
     segment = segments[index]
     contacts = ["1" in each.features.rel_start for each in segments]
     ends = ["1" in each.features.rel_end for each in segments]
+
+    def neighbour(name: str | None, beside: Sequence[Segment]) -> bool:
+        """Whether a neighbour bears a name; an empty name means that there is none."""
+        if name is None or not name or not beside:
+            return name is None or (not name and not beside)
+        return name in {ANY, beside[0].name, *beside[0].general}
+
     return (
         rule.name in {ANY, segment.name, *segment.general}
         and (not rule.object or rule.object in segment.objects)
         and (not rule.dominant or segment.objects[:1] == (rule.dominant,))
         and (rule.position != "before first" or not any(contacts[: index + 1]))
         and (rule.position != "after last" or not any(ends[index:]))
-        and (rule.previous is None or _is(rule.previous, segments[:index][-1:]))
-        and (rule.next is None or _is(rule.next, segments[index + 1 : index + 2]))
+        and neighbour(rule.previous, segments[:index][-1:])
+        and neighbour(rule.next, segments[index + 1 : index + 2])
     )
-
-
-def _is(name: str, neighbour: Sequence[Segment]) -> bool:
-    """Whether the neighbour bears the name; an empty name means that there is none."""
-    if not neighbour or not name:
-        return not neighbour and not name
-    return name in {ANY, neighbour[0].name, *neighbour[0].general}
 
 
 class ContactArrays(Entry):

@@ -30,7 +30,6 @@ from capar.evaluation.plan import (
     check_names,
     known_names,
     labelled,
-    own_names,
 )
 from capar.model.capture import Capture
 from capar.model.errors import CaparError, FileError
@@ -130,7 +129,8 @@ def _own_names(plan: Plan, base: Profile) -> tuple[LabelMapping, list[str]]:
             'labels, as in: [[rule]] name = "Reach" label = "approach"'
         )
     strangers = [f"no rule gives the label {name!r}" for name in sorted(labels - names)]
-    return own_names({*names, *labels}), strangers
+    every = tuple({*names, *labels})
+    return LabelMapping(Path(), (), {}, every, own_names=True), strangers
 
 
 def compare(

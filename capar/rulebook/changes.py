@@ -120,28 +120,6 @@ def renamed(seen: Seen, *, before: Profile, after: Profile) -> tuple[Renamed, ..
     return tuple(changes)
 
 
-def reclassified(actionary: str | None, *, after: Profile, captures: Sequence[Path]) -> Effect:
-    """Rename what rules change in an Actionary, all of it in one transaction.
-
-    Args:
-        actionary: Its place; None for the usual one.
-        after: The rules that are to name the segments observed with their profile.
-        captures: Folders below which the captures are, as they were when they were observed.
-
-    Each observation that changes is made again from its capture's files, which must be those that
-    it was made from, and with flicker resolved only if it was; it then says which rules it rests
-    on.
-
-    Raises:
-        FileError: The files of a capture are gone or have changed; nothing is renamed then.
-        StoreError: The Actionary cannot be used.
-    """
-    with Actionary.open(actionary) as store:
-        effect, renewed = _planned(store, after, captures)
-        replace_all(store.store, renewed)
-    return effect
-
-
 def add_reclassifying(
     path: Path,
     *,

@@ -9,7 +9,7 @@ from capar.model.facts import Fact
 from capar.model.observation import ObservedLink, Segment, find_segment, split_capture
 from capar.model.par import FeatureSet
 from capar.pipelines.observation import facts_program
-from capar_rules.authoring.drafting import bits_of, distinction, excerpt, fitting, written_rule
+from capar_rules.authoring.drafting import bits_of, excerpt, fitting, rule_telling
 from capar_rules.authoring.user_primitives import LACKING, Example, new_rule, rules_of, written
 from capar_rules.borders.border_numbers import Tick, number_borders
 from capar_rules.engine.profiles import Profile, profile
@@ -116,8 +116,7 @@ def _smallest(
     own = bits[segment.ee, tick]
     others = [each for place, each in sorted(bits.items()) if place != (segment.ee, tick)]
     given = [each for each in (fitting(general),) if general and each in own]
-    found = distinction(own, others, given=given)
-    return written_rule(name, found, given) if found.chosen else ""
+    return rule_telling(name, own, others, given=given)
 
 
 def _examples(

@@ -105,7 +105,7 @@ def reason_tree(told: Explanation, seen: Observation) -> Reason:
         elif not cause.atom.startswith(JOINT):
             below.append(cause)
     below += _joint(told, seen)
-    return replace(top, because=tuple(below)).with_sentences().without_repeats()
+    return replace(top, because=tuple(below)).sentences_once()
 
 
 def _branch(reason: Reason, depth: int) -> Iterator[str]:

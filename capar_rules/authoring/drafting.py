@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from functools import cache
 
 from capar.model.facts import Fact, Frames, Link, RateMhz, Tag, Touching, program
@@ -10,7 +10,7 @@ from capar.model.observation import ObservedLink, Segment
 from capar.model.par import UNKNOWN
 from capar_rules.borders.border_numbers import number_borders
 from capar_rules.engine.profiles import Profile
-from capar_rules.engine.solver import optima, rule_file, solve, worlds
+from capar_rules.engine.solver import rule_file, solve, worlds
 from capar_rules.engine.syntax import parse, parse_text, split_arguments, towards
 
 Place = tuple[str, int]
@@ -20,20 +20,6 @@ Bits = Mapping[Place, frozenset[str]]
 """The conditions that each segment fulfils."""
 
 _CONDITION = re.compile(r"^condition\(Segment\) :- (.+)\.$", re.MULTILINE)
-
-
-@dataclass(frozen=True)
-class Distinction:
-    """The conditions that tell a segment from others."""
-
-    chosen: tuple[str, ...]
-    """The fewest that tell it from each that can be told apart; of equals those listed first."""
-
-    others: int
-    """From how many segments it is told."""
-
-    alike: int
-    """How many of them nothing tells it from."""
 
 
 @cache
@@ -70,69 +56,54 @@ def fitting(name: str) -> str:
     return f'fits(Segment, "{name}")'
 
 
-def written_rule(name: str, found: Distinction, given: Sequence[str]) -> str:
-    """The rule of a distinction, with how many others it is told from in a comment."""
-    body = ",\n    ".join([*given, *found.chosen])
-    told = found.others - found.alike
-    text = f"% The fewest conditions that tell it from {told} of the {found.others} others observed"
-    text += "\n% that fit the same more general primitive.\n" if given else ".\n"
-    if found.alike:
-        text += f"% From {found.alike} of them nothing tells it: look for a word that does.\n"
-    return f'{text}fits(Segment, "{name}") :-\n    {body}.\n'
-
-
-def distinction(
-    own: frozenset[str], others: Sequence[frozenset[str]], *, given: Sequence[str] = ()
-) -> Distinction:
-    """The fewest conditions of one segment that tell it from others.
-
-    At least one is chosen where any tells it from another.
+def rule_telling(
+    name: str, own: frozenset[str], others: Sequence[frozenset[str]], *, given: Sequence[str] = ()
+) -> str:
+    """A rule of few conditions that tell a segment from others; empty if none do.
 
     Args:
+        name: The primitive.
         own: What the segment fulfils.
         others: What the others fulfil.
         given: Conditions that the rule has anyway: only those who fulfil them are to be told apart.
     """
     rest = [each for each in others if {*given} <= each]
     usable = [each for each in conditions() if each in own]
-    telling = {bit: [at for at, each in enumerate(rest) if bit not in each] for bit in usable}
-    wider = {
-        bit
-        for bit in usable
-        if telling[bit]
-        or (not (given and bit.startswith(OF_FEATURES)) and any(bit not in each for each in others))
-    }
-    told = {at for places in telling.values() for at in places}
-    lines = [f"bit({number}). " for number, bit in enumerate(usable) if bit in wider]
-    lines += [f"tells({number},{at})." for number, bit in enumerate(usable) for at in telling[bit]]
-    lines += [f"other({at})." for at in sorted(told)]
-    (best,) = optima("\n".join([*lines, _PROGRAM]), [("chosen", 1)]) if wider else [frozenset()]
-    chosen = sorted(int(str(number)) for _, (number,) in best)
-    return Distinction(tuple(usable[number] for number in chosen), len(rest), len(rest) - len(told))
+    chosen, left = distinction(usable, rest)
+    if not chosen:
+        return ""
+    text = f"% Conditions that tell it from {len(rest) - left} of the {len(rest)} others observed"
+    text += "\n% that fit the same more general primitive.\n" if given else ".\n"
+    if left:
+        text += f"% From {left} of them nothing tells it: look for a word that does.\n"
+    body = ",\n    ".join([*given, *chosen])
+    return f'{text}fits(Segment, "{name}") :-\n    {body}.\n'
 
 
-OF_FEATURES = ("possessing(", "touched_at(", "occupied(", "free(", "kind(")
-"""Prefixes of conditions that the features of a primitive may imply."""
+def distinction(usable: Sequence[str], others: Sequence[frozenset[str]]) -> tuple[list[str], int]:
+    """Conditions that tell a segment from others, and how many of those nothing tells it from.
 
-
-_PROGRAM = """
-#defined bit/1. #defined tells/2. #defined other/1.
-{ chosen(Number) : bit(Number) }.
-told(Other) :- chosen(Number), tells(Number, Other).
-:- other(Other), not told(Other).
-:- not chosen(_), bit(_).
-#minimize { 1@2, Number : chosen(Number) }.
-#minimize { Number@1, Number : chosen(Number) }.
-"""
+    Taken in turn is the first that tells it from most of those left; needless ones go.
+    """
+    chosen: list[str] = []
+    left = list(others)
+    while usable and (best := max(usable, key=lambda bit: sum(bit not in each for each in left))):
+        apart = [each for each in left if best in each]
+        if len(apart) == len(left):
+            break
+        chosen.append(best)
+        left = apart
+    for bit in list(chosen):
+        fewer = {*chosen} - {bit}
+        if sum(fewer <= each for each in others) == len(left):
+            chosen.remove(bit)
+    return [bit for bit in usable if bit in chosen], len(left)
 
 
 def _place(term: object) -> Place:
     assert isinstance(term, tuple)
     return str(term[1]), int(term[2])
 
-
-MOST_FACTS = 36
-"""A longer example is shortened further; with its lines of story and names it has 40 lines."""
 
 MARGIN = 1
 """How many segments before and after it an excerpt contains."""
@@ -247,38 +218,12 @@ def _shifted(fact: Fact, first: int, last: int) -> Fact:
 def _shortened(
     facts: tuple[Fact, ...], told: Callable[[Sequence[Fact]], Names | None]
 ) -> tuple[Fact, ...]:
-    """Fewer facts of which the same is told: whole kinds go first, then single facts."""
+    """The facts without those kinds that change none of the names."""
     names = told(facts)
-
-    def alike(some: Sequence[Fact]) -> bool:
-        return told(some) == names
-
-    kinds = sorted({type(each).predicate for each in facts} - {*NEEDED})
-    few = _without(facts, [{each} for each in kinds], alike, key=lambda each: type(each).predicate)
-    spare = [{str(each)} for each in few if type(each).predicate not in NEEDED]
-    return _without(few, spare, alike, key=str) if len(few) > MOST_FACTS else few
-
-
-def _without(
-    facts: tuple[Fact, ...],
-    groups: Sequence[set[str]],
-    alike: Callable[[Sequence[Fact]], bool],
-    *,
-    key: Callable[[Fact], str],
-) -> tuple[Fact, ...]:
-    """The facts without those groups that nothing needs, found by halving what is left out."""
-    if not groups:
-        return facts
-    out = set[str]().union(*groups)
-    rest = tuple(each for each in facts if key(each) not in out)
-    if alike(rest):
-        return rest
-    if len(groups) == 1:
-        return facts
-    middle = len(groups) // 2
-    return _without(
-        _without(facts, groups[:middle], alike, key=key), groups[middle:], alike, key=key
-    )
+    for kind in sorted({type(each).predicate for each in facts} - {*NEEDED}):
+        fewer = tuple(each for each in facts if type(each).predicate != kind)
+        facts = fewer if told(fewer) == names else facts
+    return facts
 
 
 NEEDED = tuple(each.predicate for each in (Frames, RateMhz, Link, Tag, Touching))

@@ -266,25 +266,6 @@ def worlds(text: str) -> list[tuple[str, ...]]:
     return sorted(tuple(sorted(each)) for each in found)
 
 
-def optima(text: str, shown: Iterable[Signature], *, limit: int = 1) -> list[frozenset[Atom]]:
-    """The shown atoms of each optimal answer, without duplicates; none if there is no answer.
-
-    Raises:
-        RuleError: The program has an error.
-    """
-    control = _grounded_text(
-        _showing(text, shown), ["--opt-mode=optN", "--project=show", f"--models={limit + 1}"]
-    )
-    found: list[frozenset[Atom]] = []
-    with control.solve(yield_=True) as handle:
-        for model in handle:
-            if model.optimality_proven:
-                found.append(_atoms(model))
-                if len(found) == limit:
-                    break
-    return sorted(set(found), key=lambda each: sorted(map(str, each)))
-
-
 def understand(text: str) -> None:
     """Have the solver read a program and check its safety without grounding anything.
 
@@ -318,7 +299,9 @@ def brave(text: str, shown: Iterable[Signature], *, known: Container[Atom] = ())
         RuleError: The program has an error, or no answer.
     """
     predicates = tuple(shown)
-    control = _grounded_text(_showing(text, predicates), ["--enum-mode=brave", "--models=0"])
+    shows = "".join(f"#show {name}/{arity}.\n" for name, arity in sorted(predicates))
+    options = ["--enum-mode=brave", "--models=0"]
+    control = _grounded_text(f"{text}\n{shows or '#show.'}\n", options)
     possible = (
         atom.symbol
         for signature in predicates
@@ -332,16 +315,7 @@ def brave(text: str, shown: Iterable[Signature], *, known: Container[Atom] = ())
         last = handle.last()
         if last is None:
             raise RuleError("these rules contradict each other: they have no answer")
-        return _atoms(last)
-
-
-def _showing(text: str, shown: Iterable[Signature]) -> str:
-    shows = "".join(f"#show {name}/{arity}.\n" for name, arity in sorted(shown))
-    return f"{text}\n{shows or '#show.'}\n"
-
-
-def _atoms(model: clingo.Model) -> frozenset[Atom]:
-    return frozenset(map(_atom, model.symbols(shown=True)))
+        return frozenset(map(_atom, last.symbols(shown=True)))
 
 
 def _atom(symbol: clingo.Symbol) -> Atom:

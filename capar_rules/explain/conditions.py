@@ -30,19 +30,19 @@ class Reason:
     because: tuple["Reason", ...]
 
     repeated: bool = False
-    """Whether some of what it was derived from stands where it is met first (``expanded_once``,
-    ``without_repeats``)."""
+    """Whether some of what it was derived from is left out, as it stands above."""
 
-    def with_sentences(self) -> "Reason":
-        """The tree of the nodes that have a sentence, each subtree only once."""
-        return _with_sentences(self, set())
+    def sentences_once(self) -> "Reason":
+        """The tree of the nodes that have a sentence, each sentence only where it is met first."""
+        known = set[str]()
 
-    def without_repeats(self) -> "Reason":
-        """The tree in which a sentence stands only where it is met first.
+        def kept(reason: Reason) -> Reason:
+            known.add(reason.sentence)
+            every = _nearest(reason)
+            below = [kept(each) for each in every if each.sentence not in known]
+            return replace(reason, because=tuple(below), repeated=len(below) < len(every))
 
-        Nodes below which others were left out are ``repeated``.
-        """
-        return _without_repeats(self, set())
+        return kept(self)
 
     def expanded_once(self) -> "Reason":
         """The tree in which what an atom was derived from stands only where it is met first.
@@ -50,7 +50,15 @@ class Reason:
         A derivation shares its parts, so written out in full it may have 10,000 times as many
         nodes as it has atoms.
         """
-        return _expanded_once(self, set())
+        known = set[str]()
+
+        def kept(reason: Reason) -> Reason:
+            if reason.because and reason.atom in known:
+                return replace(reason, because=(), repeated=True)
+            known.add(reason.atom)
+            return replace(reason, because=tuple(map(kept, reason.because)))
+
+        return kept(self)
 
     def walk(self) -> Iterator["Reason"]:
         """This node and all below it, from the top, each once."""
@@ -61,32 +69,6 @@ class Reason:
                 passed.add(id(each))
                 yield each
                 waiting += reversed(each.because)
-
-
-def _expanded_once(reason: Reason, known: set[str]) -> Reason:
-    if reason.because and reason.atom in known:
-        return replace(reason, because=(), repeated=True)
-    known.add(reason.atom)
-    below = tuple(_expanded_once(each, known) for each in reason.because)
-    return replace(reason, because=below)
-
-
-def _with_sentences(reason: Reason, known: set[str]) -> Reason:
-    """The tree of sentences; a repeated sentence has nothing below it."""
-    below: list[Reason] = []
-    if reason.sentence not in known:
-        known.add(reason.sentence)
-        below = [_with_sentences(each, known) for each in _nearest(reason)]
-    return replace(reason, because=tuple(below))
-
-
-def _without_repeats(reason: Reason, known: set[str]) -> Reason:
-    known.add(reason.sentence)
-    below: list[Reason] = []
-    for cause in reason.because:
-        if cause.sentence not in known:
-            below.append(_without_repeats(cause, known))
-    return replace(reason, because=tuple(below), repeated=len(below) < len(reason.because))
 
 
 def _nearest(reason: Reason) -> list[Reason]:
@@ -115,7 +97,7 @@ COMPARED: Mapping[str, Callable[[float, float], bool]] = {
 WORDS = {">=": "at least", "<=": "at most", ">": "more than", "<": "less than"}
 OPPOSITE = {">=": "<", "<": ">=", "<=": ">", ">": "<="}
 
-BESIDE = ("joins_in(", "looks(", "kept_from(")
+BESIDE = ("joins_in(", "looks(")
 """Prefixes of atoms that accompany a name and are no reason for it."""
 
 NO_REASON = (
@@ -240,7 +222,7 @@ class Conditions:
         predicate, arguments = parsed(atom)
         if (predicate, len(arguments)) not in self.base.sentences.compared:
             return
-        values = self.derived.comparisons(atom)
+        values = self.derived.compared.get(atom, {})
         for number, comparison in enumerate(self.base.sentences.quantities(predicate, arguments)):
             if comparison is not None and comparison.relation:
                 yield self._compared(comparison, arguments, None, frames, absent=absent)
@@ -316,12 +298,6 @@ def leading(reason: Reason) -> list[Reason]:
     return [each for each in every if each.leading]
 
 
-def doubts(reasons: Iterable[Reason]) -> list[str]:
-    """What was corrected as flicker, of all on which conditions rest."""
-    nodes = (node for reason in reasons for node in reason.walk())
-    return list(dict.fromkeys(each.sentence for each in nodes if each.atom.startswith(DOUBTED)))
-
-
 def _nodes(tops: Iterable[Reason], passed: set[int]) -> Iterator[Reason]:
     """Nodes from the top, each once, as far down as the features."""
     waiting = list(reversed(list(tops)))
@@ -343,17 +319,3 @@ def _rank(reason: Reason) -> int:
     if predicate in ("no_contact", "uncounted"):
         return 0 if arguments[0].startswith(f"seg({arguments[2]},") else 2
     return {"moved": 1, "stays": 1}.get(predicate, OWN)
-
-
-def clauses(conditions: Iterable[Condition]) -> list[str]:
-    """The sentences of conditions, each once; those that differ in their time alone are one."""
-    times: dict[str, list[str]] = {}
-    for each in conditions:
-        text, at, time = each.sentence.rpartition(" at ")
-        if not at or not time.endswith(" s") or " and " in time:
-            text, time = each.sentence, ""
-        if text and time not in times.setdefault(text, []):
-            times[text].append(time)
-    return [
-        f"{text} at {' and '.join(sorted(at))}" if all(at) else text for text, at in times.items()
-    ]

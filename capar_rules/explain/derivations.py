@@ -47,7 +47,8 @@ class Numbering:
 
     def rule(self, statement: Statement) -> str:
         """A rule with the atoms of one window; other statements as they are."""
-        if statement.kind != "rule" or self._is_same(statement):
+        heads = {head.signature for head in statement.heads}
+        if statement.kind != "rule" or (heads and heads <= self.same):
             return statement.text
         if statement.head_kind == "constraint":
             return f":- {self.body(statement.body)}."
@@ -81,11 +82,6 @@ class Numbering:
         every = "|".join(re.escape(each) for each in sorted(known, key=len, reverse=True))
         pattern = rf"(?<!\w)(?:{every})(?!\w)"
         return re.sub(pattern, lambda found: self.atom(found[0], known[found[0]]), text)
-
-    def _is_same(self, statement: Statement) -> bool:
-        return bool(statement.heads) and all(
-            each.signature in self.same for each in statement.heads
-        )
 
 
 def _alternatives(inside: str) -> Iterator[str]:
@@ -243,14 +239,6 @@ class Derivations:
         for name in predicates:
             yield from map(str, self.named.get(name, ()))
 
-    def holds(self, atom: str) -> bool:
-        """Whether a rule derived an atom."""
-        return any(str(each) == atom for each in self.named.get(atom.partition("(")[0], ()))
-
-    def comparisons(self, atom: str) -> dict[int, Compared]:
-        """The inequalities in the rules for an atom with their values, by their number there."""
-        return self.compared.get(atom, {})
-
     def why(self, atom: str) -> Grounds:
         """The derivation tree of an atom.
 
@@ -273,9 +261,7 @@ class Derivations:
         rule, children = self._instance(symbol, above)
         below = above | {symbol}
         because = tuple(
-            self._missing(each.arguments[0])
-            if each.name == ABSENT
-            else self._grounds(each, below, done)
+            _missing(each.arguments[0]) if each.name == ABSENT else self._grounds(each, below, done)
             for each in children
         )
         found = Grounds(
@@ -283,10 +269,6 @@ class Derivations:
         )
         done[symbol] = found
         return found
-
-    def _missing(self, symbol: clingo.Symbol) -> Grounds:
-        arguments = tuple(map(_plain, symbol.arguments))
-        return Grounds(f"not {symbol}", symbol.name, arguments, None, True, ())
 
     def _instance(
         self, symbol: clingo.Symbol, above: frozenset[clingo.Symbol]
@@ -301,6 +283,11 @@ class Derivations:
                 return self.recorded[number].place, list(dict.fromkeys(children))
         told_below = () if symbol in self.instances else self.more.get(symbol, ())
         return None, sorted(told_below)
+
+
+def _missing(symbol: clingo.Symbol) -> Grounds:
+    arguments = tuple(map(_plain, symbol.arguments))
+    return Grounds(f"not {symbol}", symbol.name, arguments, None, True, ())
 
 
 def _shown(control: clingo.Control) -> list[clingo.Symbol]:
@@ -329,7 +316,9 @@ def _records(number: int, rule: Statement, numbering: Numbering) -> list[str]:
     literals, choices = _chosen(rule.body)
     body = numbering.body(literals, *choices)
     lines = [f"because({WINDOW},{number},{head},{_tuple(literals)}) :- {body}."]
-    shared = _variables(head).union(*(_variables(each.text) for each in _plainly(rule.body)))
+    shared = _variables(head).union(
+        *(_variables(one.text) for one in rule.body if one.kind in ("atom", "comparison"))
+    )
     for literal in rule.body:
         for element in filter(None, literal.elements):
             inside = numbering.body(element)
@@ -384,10 +373,6 @@ def _chosen(body: Sequence[Literal]) -> tuple[list[Literal], list[str]]:
 
 
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\b_*[A-Z]\w*')
-
-
-def _plainly(body: Iterable[Literal]) -> Iterable[Literal]:
-    return (each for each in body if each.kind in ("atom", "comparison"))
 
 
 def _variables(text: str) -> set[str]:

@@ -1,6 +1,5 @@
 """Why a segment has its name: its conditions, the nearest other name, and the derivation."""
 
-import re
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,8 +13,8 @@ from capar.model.observation import Segment
 from capar.model.par import UNKNOWN
 from capar_rules.borders.border_numbers import number_borders
 from capar_rules.engine.profiles import Profile
-from capar_rules.engine.syntax import FITS, Statement, parse_text, split_arguments, stated
-from capar_rules.explain.conditions import Condition, Conditions, clauses, doubts, leading
+from capar_rules.engine.syntax import Statement, parse_text, stated
+from capar_rules.explain.conditions import DOUBTED, Condition, Conditions, leading
 from capar_rules.explain.conditions import Reason as Reason
 from capar_rules.explain.derivations import Derivations, Grounds, Recorder
 from capar_rules.explain.nearest import (
@@ -31,8 +30,6 @@ from capar_rules.explain.sentences import RuleBase as RuleBase
 from capar_rules.explain.sentences import Scene, listed
 from capar_rules.explain.sentences import rule_base as rule_base
 from capar_rules.explain.windows import Windows
-
-_UNNAMED = re.compile(r"(?<=[(,])_(?=[,)])")
 
 ALWAYS = (("segment", 3), ("also", 2))
 TOGETHER = 16
@@ -107,37 +104,7 @@ def _naming(statements: tuple[Statement, ...], name: str) -> tuple[Statement, ..
     for other in overruling(statements, name):
         fit = f'fits(Segment,"{other}"); fits(Segment,"{name}")'
         found += parse_text(f'overruled(Segment,"{name}") :- {fit}.')
-    return (*found, *_kept_from(statements, name))
-
-
-def _kept_from(statements: Sequence[Statement], name: str) -> Iterator[Statement]:
-    """Rules by which what alone keeps a segment from a more specific name stands in its tree.
-
-    Of a rule of a more specific primitive one condition is a negation, and all but that one hold:
-    what holds instead decided that the segment has the more general name.
-    """
-    others = {f'"{other}"' for other in overruling(statements, name)}
-    for rule in statements:
-        for head in rule.heads if rule.body else ():
-            segment, other = split_arguments(head.text)[:2] if head.signature == FITS else ("", "")
-            for literal in rule.body if other in others else ():
-                if literal.kind == "atom" and literal.sign == 1:
-                    first, *parts = _UNNAMED.split(literal.atoms[0].text)
-                    atom = first + "".join(f"Unnamed{n}{part}" for n, part in enumerate(parts))
-                    rest = [each.text for each in rule.body if each is not literal]
-                    body = "; ".join([*rest, atom, f'named({segment},"{name}")'])
-                    kept = f"kept_from({segment},{other})"
-                    yield from parse_text(f'also(named({segment},"{name}"),{kept}) :- {body}.')
-                    yield from parse_text(f"also({kept},{atom}) :- {body}.")
-
-
-@dataclass(frozen=True)
-class _Answer:
-    """What follows from the facts around a segment."""
-
-    derived: Derivations
-    conditions: Conditions
-    roots: Sequence[str]
+    return tuple(found)
 
 
 @dataclass
@@ -174,8 +141,8 @@ class Explainer:
             RuleError: A segment does not follow from these facts and rules.
         """
         return tuple(
-            self._explanation(segment, answer)
-            for segment, answer in zip(segments, self._answers(segments), strict=True)
+            self._explanation(segment, about, roots)
+            for segment, (about, roots) in zip(segments, self._answers(segments), strict=True)
         )
 
     def nearest_rules(self, segment: Segment, name: str) -> list[NearRule]:
@@ -184,12 +151,14 @@ class Explainer:
         Raises:
             RuleError: The segment does not follow from these facts and rules.
         """
-        (answer,) = self._answers([segment], asked=name)
-        return nearest_rules(self.base, [name], answer.conditions, most=MOST_ASKED)
+        ((conditions, _),) = self._answers([segment], asked=name)
+        return nearest_rules(self.base, [name], conditions, most=MOST_ASKED)
 
-    def _answers(self, segments: Sequence[Segment], asked: str = "") -> list[_Answer]:
-        """What follows from windows around segments, wide enough for each to follow."""
-        found: dict[tuple[str, int], _Answer] = {}
+    def _answers(
+        self, segments: Sequence[Segment], asked: str = ""
+    ) -> list[tuple[Conditions, Sequence[str]]]:
+        """What follows from windows around segments, and the atoms that say what each is called."""
+        found: dict[tuple[str, int], tuple[Conditions, Sequence[str]]] = {}
         windows = {each: self.windows_of(each.ee, self.ticks(each)) for each in segments}
         while waiting := [each for each in windows if (each.ee, each.index) not in found]:
             for group in _groups(waiting):
@@ -208,7 +177,7 @@ class Explainer:
                     if roots:
                         scene = self._scene(derived, self.term(segment))
                         about = Conditions(self.base, derived, scene)
-                        found[segment.ee, segment.index] = _Answer(derived, about, roots)
+                        found[segment.ee, segment.index] = about, roots
         return [found[each.ee, each.index] for each in segments]
 
     def ticks(self, segment: Segment) -> tuple[int, int]:
@@ -249,13 +218,14 @@ class Explainer:
                 objects[term].append(name)
         return Scene(self.windows.rate, self.windows.frames, ends, self.names, objects, own)
 
-    def _explanation(self, segment: Segment, answer: _Answer) -> Explanation:
-        about, done = answer.conditions, dict[str, Reason]()
-        reasons = [self._reason(answer.derived.why(one), about.scene, done) for one in answer.roots]
+    def _explanation(
+        self, segment: Segment, about: Conditions, roots: Sequence[str]
+    ) -> Explanation:
+        derived, own, done = about.derived, about.scene.own, dict[str, Reason]()
+        reasons = [self._reason(derived.why(one), about.scene, done) for one in roots]
         nodes = [node for reason in reasons for node in leading(reason)]
         top = replace(reasons[0], because=(*reasons[0].because, *reasons[1:]))
         conditions = tuple(map(about.of, nodes))
-        derived, own = answer.derived, about.scene.own
         fitting = {name for term, name in derived.holding("fits") if term == own}
         pairs = stated(self.base.statements, ("specialises", 2))
         general = sorted(
@@ -267,7 +237,11 @@ class Explainer:
         near_rules = nearest_rules(self.base, others, about)
         near = next((one for one in near_rules if not one.vague), None)
         kind = f", a kind of {listed(general)}," if general else ""
-        told = f"{segment.name}{kind} because {'; '.join(clauses(conditions))}."
+        sentences = dict.fromkeys(one.sentence for one in conditions if one.sentence)
+        doubted = (
+            one.sentence for node in nodes for one in node.walk() if one.atom.startswith(DOUBTED)
+        )
+        told = f"{segment.name}{kind} because {'; '.join(sentences)}."
         if near is not None:
             told += f" Nearest other name: {near.sentence}."
         return Explanation(
@@ -279,7 +253,7 @@ class Explainer:
             told,
             conditions,
             near,
-            tuple(doubts(nodes)),
+            tuple(dict.fromkeys(doubted)),
             top,
             tuple(general),
         )

@@ -321,8 +321,23 @@ def forms_of(base: RuleBase, name: str) -> tuple[Form, ...]:
         waiting = [(Form(rule, rule.body), 0)]
         while waiting and len(finished) + len(waiting) <= MOST_FORMS:
             form, depth = waiting.pop()
-            own = _terms_of_segment(form)
-            at = next((each for each in form.body if _unfolds(each, base, own)), None)
+            own = set(split_arguments(rule.heads[0].text)[:1])  # the segment that it is about
+            for one, _, other in (each.partition("=") for each in form.joins):
+                own |= {one, other} if own & {one, other} else set()
+            at = next(
+                (
+                    each
+                    for each in form.body
+                    if each.kind == "atom"
+                    and not each.sign
+                    and ";" not in each.text
+                    and own & {*split_arguments(each.text)[:1]}
+                    and each.atoms[0].signature not in (FITS, FEATURE)
+                    and not base.sentences.describes(each.atoms[0].signature)
+                    and _definitions(each, base.statements)
+                ),
+                None,
+            )
             if at is None or depth == DEEPEST:
                 finished.append(form)
                 continue
@@ -330,24 +345,6 @@ def forms_of(base: RuleBase, name: str) -> tuple[Form, ...]:
                 waiting.append((_unfolded(form, at, definition, f"{depth}_{number}"), depth + 1))
         found += [*finished, *(form for form, _ in waiting)]
     return tuple(found)
-
-
-def _terms_of_segment(form: Form) -> frozenset[str]:
-    """The segment that the rule is about, and what it is equal to."""
-    found = set(split_arguments(form.rule.heads[0].text)[:1])
-    for one, _, other in (each.partition("=") for each in form.joins):
-        found |= {one, other} if found & {one, other} else set()
-    return frozenset(found)
-
-
-def _unfolds(literal: Literal, base: RuleBase, own: frozenset[str]) -> bool:
-    if literal.kind != "atom" or literal.sign or ";" in literal.text:
-        return False
-    if not own & {*split_arguments(literal.text)[:1]}:
-        return False
-    signature = literal.atoms[0].signature
-    described = signature in (FITS, FEATURE) or base.sentences.describes(signature)
-    return not described and bool(_definitions(literal, base.statements))
 
 
 def _definitions(literal: Literal, statements: Sequence[Statement]) -> list[Statement]:

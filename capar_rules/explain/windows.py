@@ -28,27 +28,26 @@ class Windows:
         self.numbered: dict[str, _Index] = defaultdict(_Index)
         intervals = FactIntervals(facts)
         for fact in facts:
-            span = _span(fact, intervals)
+            span = intervals.of(fact)
+            if span is None and isinstance(fact, Observed) and fact.ends():
+                span = fact.ends()[0], fact.ends()[0]  # no other fact states its interval
             if span is None:
                 self.always.append(fact)
             else:
                 self.timed.add(span, fact)
         for fact in numbered:
-            self._number(fact)
-
-    def _number(self, fact: Fact) -> None:
-        if isinstance(fact, LastTick):
-            return
-        ee = str(getattr(fact, "ee"))  # noqa: B009 (every numbered fact has one)
-        first, last = getattr(fact, "first", None), getattr(fact, "last", None)
-        if first is not None and last is not None:
-            self.numbered[ee].add((first, last), fact)
-        elif hasattr(fact, "tick"):
-            self.numbered[ee].add((fact.tick, fact.tick), fact)
-        elif isinstance(fact, MovesDuring | Shares):
-            self.numbered[ee].during[fact.object, fact.since].append(fact)
-        else:
-            self.always.append(fact)
+            ee = str(getattr(fact, "ee"))  # noqa: B009 (every numbered fact has one)
+            first, last = getattr(fact, "first", None), getattr(fact, "last", None)
+            if isinstance(fact, LastTick):
+                continue
+            if first is not None and last is not None:
+                self.numbered[ee].add((first, last), fact)
+            elif hasattr(fact, "tick"):
+                self.numbered[ee].add((fact.tick, fact.tick), fact)
+            elif isinstance(fact, MovesDuring | Shares):
+                self.numbered[ee].during[fact.object, fact.since].append(fact)
+            else:
+                self.always.append(fact)
 
     def around(self, ee: str, first: int, last: int, *, widen: int = 0) -> tuple[Fact, ...]:
         """The facts that can affect the segment of a link between two ticks.
@@ -75,7 +74,7 @@ class Windows:
 
     def whole(self) -> tuple[Fact, ...]:
         """All facts, if no window suffices."""
-        facts = {*self.always, *self.timed.everything()}
+        facts = {*self.always, *(one[2] for some in self.timed.buckets.values() for one in some)}
         for ee, frames in self.frames.items():
             facts |= set(self._cut(ee, (0, len(frames) - 1)))
         return tuple(sorted(facts, key=lambda each: (type(each).predicate, each)))
@@ -121,18 +120,3 @@ class _Index:
             for first, last, fact in self.buckets.get(bucket, ()):
                 if first <= span[1] and last >= span[0]:
                     yield fact
-
-    def everything(self) -> Iterator[Fact]:
-        for group in self.buckets.values():
-            yield from (fact for _, _, fact in group)
-
-
-def _span(fact: Fact, intervals: FactIntervals) -> Span | None:
-    """First and last frame of a measurement; None if it always holds.
-
-    A fact about an interval that no other fact states any more has only its first frame.
-    """
-    found = intervals.of(fact)
-    if found is None and isinstance(fact, Observed) and fact.ends():
-        return fact.ends()[0], fact.ends()[0]
-    return found

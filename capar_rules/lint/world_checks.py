@@ -51,7 +51,6 @@ FEW_OF = 20
 MOST_RIVALS = 5
 """How many rivals an ambiguity lists."""
 
-_COMPUTES = re.compile(r"[-+*/\\|&?^~;]|\.\.")
 _ANONYMOUS = re.compile(r"\bAny\d+\b")
 _VARIABLE = re.compile(r"(?<![\w\"])_*[A-Z]\w*'*")
 _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\b_*[A-Z]\w*')
@@ -238,39 +237,15 @@ class Trial:
 
     @cached_property
     def missing(self) -> Mapping[int, str]:
-        """For rules that never fire, a condition that no world fulfils though a segment may.
-
-        No world has such a relation, or it depends on one chosen over few arguments only.
-        """
-        conditions = {
-            (at, number): literal.atoms[0]
-            for at, rule in self.unfired.items()
-            if not self.stated.rests_on_open(at)
-            for number, literal in enumerate(rule.body)
-            if literal.kind == "atom" and not literal.sign
-            and not _COMPUTES.search(STRING.sub("", literal.text))
-        }  # fmt: skip
-        held: set[tuple[object, ...]] = {
-            (*key, "so")
-            for key, atom in conditions.items()
-            if atom.signature == FITS and self.extents.fits.get(primitive_in(atom))
-        }
-        for worlds in (self.worlds, every_world() - self.worlds):
-            probes = ""
-            for (at, number), atom in conditions.items():
-                name, arity = atom.signature
-                if (at, number, "so") not in held:
-                    loose = _TOKEN.sub(lambda one: one[0] if one[0][0] == '"' else "_", atom.text)
-                    probes += f"_held({at},{number},so) :- {loose}.\n"
-                    if arity:
-                        every = ",".join("_" * arity)
-                        probes += f"_held({at},{number},any) :- {name}({every}).\n"
-            held |= {row for _, row in self.ask(probes, (("_held", 3),), worlds)}
+        """For rules that never fire, a condition of which the worlds have few cases or none."""
         found: dict[int, str] = {}
-        for key, atom in conditions.items():
-            chosen = self._below([atom.signature]) & chosen_in_audit()
-            if (*key, "so") not in held and (chosen or (*key, "any") not in held):
-                found.setdefault(key[0], atom.text)
+        for at, rule in self.unfired.items():
+            for each in () if self.stated.rests_on_open(at) else rule.body:
+                signature = each.atoms[0].signature if each.atoms else FITS
+                if each.kind == "atom" and not each.sign and signature != FITS:
+                    chosen = self._below([signature]) & chosen_in_audit()
+                    if chosen or signature not in given_in_audit():
+                        found.setdefault(at, each.text)
         return found
 
     @cached_property

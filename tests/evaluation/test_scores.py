@@ -22,7 +22,7 @@ from capar.evaluation.objects import (
     landings,
     printed_carries,
 )
-from capar.evaluation.plan import CarryOptions, ContactArrays, LabelMapping, Rule, read_plan
+from capar.evaluation.plan import CarryOptions, ContactArrays, LabelMapping, MappingRule, read_plan
 from capar.evaluation.scoring import Case, compare, evaluate
 from capar.model.capture import Capture, ShapeSource
 from capar.model.errors import UnknownNameError
@@ -36,7 +36,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 BOXED = EXAMPLES / "boxed_vr"
 MOVES = ("MoveObj", "MoveObjTo")
 NAMES = ("Reach", "MoveObjTo", "MoveObj", "TouchWith", "ResumePosture")
-SAME = LabelMapping(Path("m.toml"), tuple(Rule(each, each) for each in NAMES), {})
+SAME = LabelMapping(Path("m.toml"), tuple(MappingRule(name=each, label=each) for each in NAMES), {})
 """Each name is its own label."""
 
 
