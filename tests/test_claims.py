@@ -11,12 +11,11 @@ import motions
 import pytest
 from typer.testing import CliRunner
 
-from capar.claims.claims import ClaimError, judge, names_of, read_motion_test, run_motion_test
+from capar.claims.claims import ClaimError, judge, read_motion_test, run_motion_test
 from capar.cli import app
 from capar.model.errors import CaparError, FileError, UnknownNameError
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
-from capar_rules.engine.profiles import Profile
 
 DEMO = Path(__file__).parents[1] / "capar" / "demo"
 
@@ -128,22 +127,6 @@ def test_what_bears_no_such_name_is_refused_in_every_form_of_claim(drink, event,
         assert isinstance(told.value, ClaimError)
 
 
-def test_the_names_of_a_user_s_rules_can_be_claimed(drink, tmp_path):
-    rule = tmp_path / "squeeze.lp"
-    rule.write_text('%* Squeeze: it is pressed. *%\nprimitive("Squeeze").\n')
-    names = names_of(drink, rules=Profile("thesis", crossings_only=True, added=(rule,)))
-    assert judge("no right_hand Squeeze(mug)", drink, names=names).holds
-    with pytest.raises(ClaimError, match="no primitive 'Squeeze'"):
-        judge("no right_hand Squeeze(mug)", drink)
-
-
-def test_what_lasts_until_the_capture_ends_was_not_seen_to_end():
-    touching = observe(motions.touch_from_rest(motions.WOMAN).capture, rules="thesis")
-    assert judge("right_hand touches box", touching).holds
-    assert not judge("right_hand lets go of box", touching).holds
-    assert judge("no right_hand lets go of box", touching).holds
-
-
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     (tmp_path / "drink").symlink_to(DEMO / "drink_from_mug")
@@ -185,14 +168,6 @@ def written(folder: Path, captures: str, *claims: str) -> Path:
 
 def captures_of(path: Path) -> list[str]:
     return [str(Path(each).name) for each in read_motion_test(path).captures]
-
-
-def test_captures_are_named_from_the_root_or_from_the_folder(folder, tmp_path_factory):
-    elsewhere = tmp_path_factory.mktemp("elsewhere")
-    for pattern in (folder / "drink", folder / "dr*", folder / "dr*" / "capture.toml"):
-        assert len(captures_of(written(elsewhere, json.dumps([str(pattern)]), "x"))) == 1
-    assert captures_of(written(folder, '["drink", "dr*"]', "x")) == ["drink"]
-    assert captures_of(written(folder, '"*"', "x")) == ["drink"]
 
 
 def test_takes_are_captures_one_by_one_or_all(bundle):

@@ -368,11 +368,6 @@ def run_motion_test(
 ) -> Iterator[Verdict]:
     """Judge every claim of every capture; what cannot be judged is reported with the rest.
 
-    Args:
-        test: The claims and captures.
-        rules: Folder of the project's rules, where the test names none itself.
-        actionary: An Actionary whose rules count too; None for CAPAR_ACTIONARY's.
-
     Raises:
         CaparError: The rules have a fault, or there is no such profile.
     """

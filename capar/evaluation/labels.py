@@ -84,12 +84,6 @@ class Labels:
 def check_known(labels: Labels, kind: str, known: Iterable[str], *, at: str) -> None:
     """Prove that every name in the marks exists.
 
-    Args:
-        labels: The marks.
-        kind: What is named, for the message.
-        known: The names that exist.
-        at: The field of the marks that holds the name; an empty name is not looked at.
-
     Raises:
         UnknownNameError: One does not exist; it says file and line, and lists those that do.
     """

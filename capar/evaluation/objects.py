@@ -147,12 +147,7 @@ def compare_carries(
 
 
 def printed_carries(segments: Iterable[Segment], names: Sequence[str]) -> tuple[Interval, ...]:
-    """Runs of segments of one object, from the first to the last in which it is carried.
-
-    Args:
-        segments: Those of which the object is the dominant one, in order of time.
-        names: What they are called, or specialise, where they carry it.
-    """
+    """Runs of segments of one object, from the first to the last in which it is carried."""
     runs: list[list[Segment]] = []
     for segment in segments:
         if not runs or (runs[-1][-1].ee, runs[-1][-1].index + 1) != (segment.ee, segment.index):

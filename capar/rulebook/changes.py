@@ -172,12 +172,6 @@ def remove_reclassifying(
 ) -> Effect:
     """Take a rule file away and rename what it named: both, or neither.
 
-    Args:
-        path: The file.
-        actionary: The Actionary's place; None for the usual one.
-        after: The rules without it.
-        captures: Folders below which the captures are.
-
     Raises:
         CaparError: The observations cannot be made again.
     """

@@ -34,14 +34,6 @@ def rule_from_features(
 ) -> str:
     """A rule file for the feature set that a user writes: ``100,101,10,00``.
 
-    Args:
-        name: What the primitive is called.
-        features: START, END, CHANGE and FORCE in bits.
-        rules: The rules that it is to join.
-        definition: What it is, in words.
-        general: The primitive that it specialises.
-        verb: The verb for it.
-
     Raises:
         RuleError: It is no feature set, or the name is taken.
         UnknownNameError: There is no such primitive to specialise.

@@ -59,14 +59,7 @@ def fitting(name: str) -> str:
 def rule_telling(
     name: str, own: frozenset[str], others: Sequence[frozenset[str]], *, given: Sequence[str] = ()
 ) -> str:
-    """A rule of few conditions that tell a segment from others; empty if none do.
-
-    Args:
-        name: The primitive.
-        own: What the segment fulfils.
-        others: What the others fulfil.
-        given: Conditions that the rule has anyway: only those who fulfil them are to be told apart.
-    """
+    """A rule of few conditions that tell a segment from others; empty if none do."""
     rest = [each for each in others if {*given} <= each]
     usable = [each for each in conditions() if each in own]
     chosen, left = distinction(usable, rest)
@@ -121,13 +114,6 @@ def excerpt(
     name: str,
 ) -> tuple[tuple[Fact, ...], Names] | None:
     """Facts about a segment and its neighbours, as few as name it alike, and the names they give.
-
-    Args:
-        facts: What was measured of the capture.
-        link: What the end-effector does in it, by these rules.
-        segment: One of the link's segments.
-        rules: The rules, the drafted one among them.
-        name: Which name must be given as often as the rules give it to the whole excerpt.
 
     Returns:
         The facts, with frames counted from the excerpt's first one; None if no cut keeps the name.

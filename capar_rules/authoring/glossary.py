@@ -65,12 +65,7 @@ class Word:
 
 
 def words_of_text(text: str, *, file: str) -> Iterator[Word]:
-    """The predicates and constants that the comments of a rule file explain, in order.
-
-    Args:
-        text: The rule file.
-        file: What it is called.
-    """
+    """The predicates and constants that the comments of a rule file explain, in order."""
     found = [*_lines(text), *_entries(text)]
     for line, atom, meaning in sorted(found):
         name, arguments = atom.partition("(")[0], split_arguments(atom) if "(" in atom else []
@@ -142,37 +137,25 @@ class Glossary:
             for file, (word, arity) in self.internal
             if word == name
         )
-        if not found and name in self.primitives:
-            raise NoWordButPrimitiveError(name)
         if not found:
             names = {each.name for each in self.words} | {word for _, (word, _) in self.internal}
-            raise UnknownNearError(name, names)
+            near = get_close_matches(name, sorted(names), n=5, cutoff=0.5)
+            hint = f"; the nearest are {', '.join(near)}." if near else (
+                "; `capar rules words` lists them."
+            )  # fmt: skip
+            if name in self.primitives:
+                hint = (
+                    f": it is a primitive. `capar rules show {name}` prints its rules; a rule asks "
+                    f'for it with fits(Segment, "{name}").'
+                )
+            error = UnknownNameError("word of rules", name, names)
+            error.args = (f"no word of rules {name!r}{hint}",)
+            raise error
         return found
 
     def rules_of(self, signature: Signature) -> tuple[Place, ...]:
         """The places of the rules that define a predicate."""
         return tuple(dict.fromkeys(place for each, place in self.defined if each == signature))
-
-
-class NoWordButPrimitiveError(UnknownNameError):
-    """A primitive was asked for where words of rules are explained."""
-
-    def __init__(self, name: str) -> None:
-        super().__init__("word of rules", name, ())
-        self.args = (
-            f"no word of rules {name!r}: it is a primitive. `capar rules show {name}` prints its "
-            f'rules; a rule asks for it with fits(Segment, "{name}").',
-        )
-
-
-class UnknownNearError(UnknownNameError):
-    """An unknown word; the message lists only similar ones, as there are hundreds."""
-
-    def __init__(self, name: str, known: set[str]) -> None:
-        super().__init__("word of rules", name, known)
-        near = get_close_matches(name, self.known, n=5, cutoff=0.5)
-        hint = f"the nearest are {', '.join(near)}" if near else "`capar rules words` lists them"
-        self.args = (f"no word of rules {name!r}; {hint}.",)
 
 
 def glossary(rules: Profile) -> Glossary:

@@ -48,12 +48,7 @@ class RuleInfo:
 
 
 def rules_of(base: Profile, *, actionary: str | Path | None = None) -> tuple[RuleInfo, ...]:
-    """Every primitive of a rule base, by name.
-
-    Args:
-        base: The rule base.
-        actionary: The Actionary whose rules are the user's own; None for ``CAPAR_ACTIONARY``'s.
-    """
+    """Every primitive of a rule base, by name."""
     statements = parse(base.files)
     mine = actionary_rules(actionary)
     verbs: dict[str, str] = {}
@@ -385,11 +380,6 @@ def checked_draft(
 
 def removable(name: str, *, files: Sequence[Path], every: Sequence[Path] = ()) -> Path:
     """The rule file that introduces a primitive, if it can be removed.
-
-    Args:
-        name: The primitive.
-        files: The files to search; the first that introduces it is returned.
-        every: All rule files that are loaded together, some of which may depend on it.
 
     Raises:
         UnknownNameError: None of the files introduces it.

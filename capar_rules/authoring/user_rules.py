@@ -31,9 +31,6 @@ def rules_folder(named: Path | None = None) -> Path:
 def actionary_rules(actionary: str | Path | None = None) -> Path | None:
     """The folder of the user's rules beside an Actionary.
 
-    Args:
-        actionary: Its folder or address; None for the one that ``CAPAR_ACTIONARY`` names.
-
     Returns:
         None where no Actionary is named, or a server keeps it: then there is no such folder.
     """

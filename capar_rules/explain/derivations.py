@@ -131,13 +131,7 @@ class Recorder:
         targets: Iterable[Signature],
         compared: Container[Signature] = (),
     ) -> None:
-        """Make rules ready.
-
-        Args:
-            statements: A rule base.
-            targets: The predicates to derive.
-            compared: Predicates of which the values of inequalities are recorded.
-        """
+        """Make rules ready."""
         self.rules = towards(list(statements), targets)
         self.numbering = Numbering(self.rules)
         recorded = [each for each in self.rules if each.body]

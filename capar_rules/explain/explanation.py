@@ -70,11 +70,6 @@ def recorder(base: RuleBase, names: frozenset[str], asked: str = "") -> Recorder
     """The recorder of why segments have names, or, for ``Unknown`` alone, why they have none.
 
     What is recorded of a segment of one of the names is the same whatever the others are.
-
-    Args:
-        base: The rules.
-        names: The names of the segments.
-        asked: Another name of which the conditions are wanted.
     """
     compared = base.sentences.compared
     wanted = {asked} if asked else {other for name in names for other in neighbours(base, name)}

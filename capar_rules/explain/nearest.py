@@ -397,14 +397,7 @@ class _Atoms:
     def nearest(
         self, form: Form, segment: str, most: int, sentences: Sentences
     ) -> tuple[tuple[Literal, ...], Bound] | None:
-        """The fewest conditions of a rule that fail, and what its variables stand for.
-
-        Args:
-            form: The rule.
-            segment: The term of the segment that its head is about.
-            most: None is returned if more conditions fail.
-            sentences: Conditions without a sentence may not fail, except where they are negated.
-        """
+        """The fewest conditions of a rule that fail, and what its variables stand for."""
         if any(not _plain(each) for each in form.body):
             return None
         failable = {id(each) for each in form.body if _may_fail(each, sentences)}

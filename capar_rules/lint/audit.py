@@ -84,12 +84,7 @@ class Audit:
 
 
 def summarise(atoms: frozenset[Atom], *, undecided: Container[object] = ()) -> Audit:
-    """The audit of what holds in some world.
-
-    Args:
-        atoms: What was asked of the worlds.
-        undecided: Primitives of which the worlds cannot tell whether they fit.
-    """
+    """The audit of what holds in some world."""
     primitives = {str(each) for (each,) in _rows(atoms, "primitive")}
     fitting = {str(each) for (each,) in _rows(atoms, "fitting")}
     winning = {str(each) for (each,) in _rows(atoms, "winning")}

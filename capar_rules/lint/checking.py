@@ -40,9 +40,6 @@ _LOCK = Lock()
 def ask(request: str) -> tuple[list[str], int | None, str]:
     """What the checker process writes on a request.
 
-    Args:
-        request: A request as JSON, in one line.
-
     Returns:
         The lines of the answer; the process's exit code (negative: the signal that ended it) if it
         ended before the answer was complete, else None; and what it wrote to standard error.
@@ -111,11 +108,6 @@ Findings = tuple[Finding, ...]
 
 def check(path: Path, *, profile: str = DEFAULT, beside: Sequence[Path] = ()) -> Findings:
     """What is wrong with a rule file; nothing in it is executed.
-
-    Args:
-        path: The file.
-        profile: The rule base that it would join.
-        beside: Other rule files of the user that it would stand beside.
 
     Raises:
         RuleError: The checker process failed for a reason other than its limits.
@@ -196,10 +188,6 @@ def admit(files: Sequence[Path], *, profile: str) -> None:
     That is syntax, predicates and names, what could run code or read other files, choices,
     negative cycles and unbounded growth. It takes well below a second, in one separate process
     for all files. Checks that ask the solver are left to `capar rules check`.
-
-    Args:
-        files: The rule files.
-        profile: The rule base that they join.
 
     Raises:
         RuleError: There is an error; it gives each with file, line, column and remedy.

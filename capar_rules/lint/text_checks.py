@@ -307,12 +307,7 @@ class Reading:
 
 
 def read_rules(path: Path, *, folders: Iterable[Path] = ()) -> Reading:
-    """Read a rule file; nothing in it is executed.
-
-    Args:
-        path: The file.
-        folders: Folders of rules; what lies in one of them may be included.
-    """
+    """Read a rule file; nothing in it is executed."""
     text, findings = _text(path)
     if not findings:
         findings = list(_tokens(text, path, tuple(folders)))

@@ -299,12 +299,7 @@ class LeftOpen:
     """The conditions of a user's rules that the worlds cannot decide, and what rests on them."""
 
     def __init__(self, trial: Trial, doubtful: frozenset[str]) -> None:
-        """Find them.
-
-        Args:
-            trial: The rules.
-            doubtful: Conditions, as written, that no world fulfils though a segment may.
-        """
+        """Find them."""
         self.trial = trial
         rules = trial.rules
         read = signatures_below(rules.values()) - {FITS}
@@ -417,12 +412,6 @@ def rivals(
     """The primitives that name a segment with one of a file's, neither the more specific; sorted.
 
     Those that may do so, by conditions that the worlds of the audit do not contain, are among them.
-
-    Args:
-        name: The primitive of the file.
-        own: The rules of the file.
-        base: The shipped rule base.
-        beside: The rules of the user's other files.
     """
     found = {other for each in Trial(own, base, beside).rivals for other in each.get(name, ())}
     return tuple(sorted(found, key=lambda each: (each in base.primitives, each)))
@@ -431,13 +420,7 @@ def rivals(
 def world_findings(
     own: Sequence[Statement], base: Known, beside: Sequence[Statement] = ()
 ) -> Iterator[Finding]:
-    """Rules that can never fire or always do, and names that clash with others or shadow them.
-
-    Args:
-        own: The rules of the file.
-        base: The shipped rule base.
-        beside: The rules of the user's other files.
-    """
+    """Rules that can never fire or always do, and names that clash with others or shadow them."""
     trial = Trial(own, base, beside)
     for at in trial.rules:
         if at < len(own):

@@ -41,20 +41,6 @@ def test_every_case_that_the_published_rules_leave_has_one_reason():
     assert all(len(reason.split()) > 5 for _, reason in shipped.excused)
 
 
-def test_the_published_feature_sets_can_be(shipped):
-    """The seven of thesis Fig 4.15 are cases that the world allows and the rules cover."""
-    for features in (
-        ("0", "1", "0", "0"),
-        ("0", "1", "0", "1"),
-        ("1", "1", "0", "0"),
-        ("101", "101", "00", "00"),
-        ("101", "101", "10", "00"),
-        ("100", "101", "10", "00"),
-        ("1", "0", "0", "0"),
-    ):
-        assert features not in shipped.uncovered
-
-
 def test_two_names_without_order_are_ambiguous(tmp_path: Path):
     rules = tmp_path / "grasp.lp"
     rules.write_text('primitive("Grasp").\nfeature_row("Grasp", any, "1", "1", "0", "0").\n')
@@ -63,15 +49,6 @@ def test_two_names_without_order_are_ambiguous(tmp_path: Path):
     assert (clash.first, clash.second) == ("Grasp", "Touch")
     assert clash.features == (("1", "1", "0", "0"),)
     assert not found.clean
-
-
-def test_a_name_that_never_wins_is_shadowed(tmp_path: Path):
-    rules = tmp_path / "grasp.lp"
-    rules.write_text(
-        'primitive("Grasp").\nfeature_row("Grasp", any, "1", "1", "0", "0").\n'
-        'specialises("Touch", "Grasp").\n'
-    )
-    assert audit(profile("thesis", added=(rules,))).shadowed == ("Grasp",)
 
 
 def test_what_no_body_can_do_is_never_fitted(tmp_path: Path):

@@ -2,20 +2,16 @@
 
 from pathlib import Path
 
-import motions
 import pytest
 
 from capar.model.errors import FileError, RuleError, UnknownNameError
 from capar_rules.authoring.user_primitives import (
-    Example,
     add_rule,
     introduced,
-    new_rule,
     preceded,
     read_examples,
     removable,
     rule_of,
-    telling,
     try_rule,
     user_rules,
     written,
@@ -24,8 +20,6 @@ from capar_rules.engine.profiles import profile
 from capar_rules.lint.checking import admitted_profile, check
 from capar_rules.lint.findings import errors
 from capar_rules.lint.world_checks import audit
-from capar_rules.pars.inference import infer
-from extractors.measure import measure
 
 FACTS = """   frames(0, 300).  rate_mhz(100000).  link(hand, hand, right).
    tag(box, mobile).  tag(table, fixed).
@@ -129,24 +123,6 @@ def test_a_file_without_examples_lacks_one_of_each_kind(grasp):
     assert [each.partition("lacks ")[2].split()[1] for each in lacking] == [
         "Example", "Counter-example",
     ]  # fmt: skip
-
-
-def test_a_feature_set_becomes_a_rule_that_names_it(tmp_path):
-    facts = telling(measure(motions.slide_object(motions.TALL_MAN).capture).facts)
-    rules = profile("thesis")
-    segment = infer(facts, profile=rules).links[0].segments[-1]
-    path = tmp_path / "shove.lp"
-    path.write_text(
-        new_rule(
-            "Shove", segment.features, definition="what the thesis calls MoveObj",
-            general=segment.name,
-            examples=[Example("A box slides.", True, facts, (("right_hand", ("Reach", "Shove")),),
-                              0)],
-        )
-    )  # fmt: skip
-    named = infer(facts, profile=admitted_profile("thesis", added=(path,))).links[0].segments[-1]
-    assert (named.name, named.general) == ("Shove", (segment.name,))
-    assert len(try_rule(path, base="thesis")) == 1
 
 
 def test_an_added_rule_is_the_users_until_it_is_removed(grasp, tmp_path):

@@ -1,9 +1,7 @@
 """Borders: numbered, shared, idle, and contacts that flicker."""
 
-import itertools
 from collections.abc import Callable
 from dataclasses import replace
-from fractions import Fraction
 from itertools import chain, combinations
 from random import Random
 
@@ -24,13 +22,12 @@ from capar.model.facts import (
     Tag,
     Touching,
 )
-from capar.model.par import LinkSteps, Step
 from capar_rules.borders.border_numbers import by_object, overlapping, shared, undisturbed
 from capar_rules.borders.deflicker import steady
 from capar_rules.borders.ticks import Meanwhile, Undisturbed, times
 from capar_rules.engine.profiles import profile
 from capar_rules.pars.inference import infer
-from capar_rules.pars.pars import _relations, allen
+from capar_rules.pars.pars import allen
 from extractors.measure import measure
 
 FLICKER = 15
@@ -356,40 +353,6 @@ INVERSE = {
     "overlaps": "overlappedBy", "equals": "equals",
 }  # fmt: skip
 BOTH = INVERSE | {other: one for one, other in INVERSE.items()}
-
-
-def link(ee: str, borders: list[int], frames: int) -> LinkSteps:
-    """A link whose steps lie between borders, in frames."""
-    steps = (
-        Step("Reach", ee, (), float(Fraction(last - first, frames)), "",
-             float(Fraction(first, frames)), (index,), "")
-        for index, (first, last) in enumerate(itertools.pairwise(borders))
-    )  # fmt: skip
-    return LinkSteps(ee, tuple(steps))
-
-
-@st.composite
-def two(draw: st.DrawFn) -> tuple[int, list[int], list[int]]:
-    """How many frames there are, and the borders of two links in them."""
-    frames = draw(st.integers(10, 2000))
-    borders = st.lists(st.integers(1, frames - 1), max_size=6, unique=True)
-    one, other = ([0, *sorted(draw(borders)), frames] for _ in range(2))
-    return frames, one, other
-
-
-@given(two())
-def test_relations_are_told_as_their_frames_have_them(case: tuple[int, list[int], list[int]]):
-    frames, one, other = case
-    found = {
-        (each.first[1], each.second[1]): each.relation
-        for each in _relations((link("a", one, frames), link("b", other, frames)), frames)
-    }
-    expected = {}
-    for i, (first, last) in enumerate(itertools.pairwise(one)):
-        for j, (begin, end) in enumerate(itertools.pairwise(other)):
-            if begin <= last and first <= end:
-                expected[i, j] = allen(first, last, begin, end)
-    assert found == expected
 
 
 @given(st.lists(st.integers(0, 6), min_size=4, max_size=4))

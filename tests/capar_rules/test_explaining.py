@@ -1,7 +1,6 @@
 """Explanations state the conditions of rules, with values that agree with what was measured."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from functools import cache
 
 import motions
@@ -11,16 +10,12 @@ from scenes.batteries import SCENES
 
 from capar.model.capture import Capture
 from capar.model.facts import (
-    Fact,
     Observed,
     ZeroCrossing,
-    program,
 )
 from capar.pipelines.explanation import Explained, explained
 from capar_rules.borders.deflicker import steady
 from capar_rules.engine.profiles import profile
-from capar_rules.engine.solver import worlds
-from capar_rules.engine.syntax import heads_of, named_node, towards
 from capar_rules.explain.conditions import Condition
 from capar_rules.explain.explanation import Explainer, Explanation, rule_base
 from capar_rules.explain.nearest import FEATURE, forms_of
@@ -122,76 +117,6 @@ def test_the_leaves_of_a_derivation_are_facts_of_the_observation(name: str):
         measured = [node.atom for node in leaves if parsed(node.atom)[0] in kinds]
         assert measured
         assert {*measured} <= facts
-
-
-@pytest.mark.parametrize("name", CAPTURES)
-def test_if_what_decides_were_otherwise_the_segment_would_fit_the_nearest_name(name: str):
-    """Counterfactual law: with the failing conditions made to hold, and all other conditions that
-    sentences describe as they are, the rules give that name; else they do not.
-    """
-    seen, every = told(name)
-    for each, segment in zip(every, seen.observation.segments, strict=True):
-        if each.nearest is not None:
-            explainer = seen.explainer
-            term, ticks = explainer.term(segment), explainer.ticks(segment)
-            own = f'fits({term},"{each.name}")' if segment.known else ""
-            window = next(
-                window
-                for window in explainer.windows_of(segment.ee, ticks)
-                if not own
-                or own in otherwise(explainer, replace(each, nearest=None), window, ticks)
-            )
-            fits = f'fits({term},"{each.nearest.name}")'
-            assert fits in otherwise(explainer, each, window, ticks), each.summary
-            assert fits not in otherwise(explainer, replace(each, nearest=None), window, ticks)
-
-
-def otherwise(
-    explainer: Explainer, told: Explanation, facts: tuple[Fact, ...], ticks: tuple[int, int]
-) -> tuple[str, ...]:
-    """What segments fit if what the nearest name lacks held, and all else stayed."""
-    needed = [one.atom for one in told.nearest.failing] if told.nearest else []
-    base = explainer.base
-    statements, heads = base.statements, heads_of(base.statements)
-    above = {("fits", 2), ("named", 2), ("features", 5), ("core_features", 5)}
-    negated = {
-        literal.atoms[0].signature
-        for form in (forms_of(base, told.nearest.name) if told.nearest else ())
-        for literal in form.body
-        if literal.kind == "atom" and literal.sign
-    }
-    given = {one for one in heads if one in negated or base.sentences.describes(one)} - above
-    given |= {("reads", 5), ("moved", 2), ("struck", 2)}
-    rules = "\n".join(each.text for each in towards(statements, given))
-    shown = "\n".join(f"#show {name}/{arity}." for name, arity in sorted(given))
-    (atoms,) = worlds(f"{rules}\n{shown}\n{program(facts)}")
-    held = {*atoms}
-    for atom in needed:
-        predicate, arguments = parsed(atom.removeprefix("not "))
-        if predicate == "contact_at":
-            hand, body, other, since, tick = arguments
-            held |= {f"reads({hand},{tick},{body},{other},{since})"}
-        elif predicate == "no_contact":
-            tick = ticks[arguments[1] == "end"]
-            about = ",".join(arguments[2:])
-            held = {one for one in held if not one.startswith(f"reads({told.ee},{tick},{about},")}
-        elif predicate == "stays":
-            held -= {f"moved({','.join(arguments)})"}
-        elif atom.startswith("not "):
-            held -= {atom.removeprefix("not ")}
-        else:
-            held |= {atom}
-    nodes = [named_node(name) for name in known(statements).primitives]
-    kept = [
-        each.text
-        for each in towards(statements, nodes, given=given)
-        if not any(head.signature in given for head in each.heads)
-    ]
-    lines = "\n".join(kept)
-    stated = "\n".join(f"{one}." for one in sorted(held))
-    defined = "\n".join(f"#defined {name}/{arity}." for name, arity in sorted(given))
-    (found,) = worlds(f"{lines}\n{defined}\n{stated}\n{program(facts)}\n#show fits/2.")
-    return found
 
 
 def test_the_same_capture_is_explained_in_the_same_words():

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from capar_rules.lint.checker_process import Request, base_of
-from capar_rules.lint.checking import answer, check
+from capar_rules.lint.checking import answer
 from capar_rules.lint.findings import ERROR, NOTE, Finding, errors
 from capar_rules.lint.word_checks import slip_findings
 
@@ -126,24 +126,3 @@ def found_in_names(tmp_path_factory) -> dict[str, tuple[Finding, ...]]:
 def test_names_that_cannot_be_and_what_nothing_fits_are_told(found_in_names, stated):
     found = {(each.code, each.level) for each in found_in_names[stated]}
     assert (MISTAKES[stated], ERROR) in found
-
-
-def test_what_others_specialise_needs_no_rule_of_its_own(tmp_path):
-    text = HEAD + 'primitive("Some").\nspecialises("Nip", "Some").\n'
-    (found,) = checked(tmp_path, text + 'fits(S, "Nip") :- fits(S, "Touch"), from_rest(S).\n')
-    assert "nothing-fits" not in {each.code for each in found}
-
-
-@pytest.mark.long
-def test_an_ambiguity_lists_five_at_most_and_tells_of_a_condition_too(tmp_path):
-    path = tmp_path / "nip.lp"
-    path.write_text(
-        '%* Nip: much. *%\nprimitive("Nip").\n'
-        'fits(S, "Nip") :- segment(S, _, _), object_at(S, 0, _).\n'
-    )
-    (found,) = [each for each in check(path) if each.code == "ambiguous"]
-    before, more, _ = found.message.partition(" and ")[2].partition(" more name the same")
-    assert more
-    assert len(before.rpartition(" and ")[0].split(", ")) == 5
-    assert 'specialises("Nip", ' in found.remedy
-    assert "add a condition" in found.remedy

@@ -1,7 +1,6 @@
 """Labels are read from every form of file, and bad ones are refused with their place."""
 
 import json
-import os
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,6 @@ from capar.evaluation import Contradictions, Kind
 from capar.evaluation.labels import Label, Labels, in_seconds, read_labels
 from capar.model.errors import FileError
 
-RECORDING = "bimacs_optitrack"
 LEFT_OUT = Contradictions.LEAVE_OUT
 
 
@@ -86,22 +84,6 @@ def test_what_two_marks_claim_can_belong_to_neither_with_a_notice(tmp_path: Path
     assert "overlap; what both claim is not counted" in notice
 
 
-def test_both_forms_of_the_published_labels_say_the_same() -> None:
-    here = Path(__file__).resolve().parents[2]
-    folder = Path(os.environ.get("CAPAR_DATA", here.parent / "shared" / "data")) / RECORDING
-    if not folder.is_dir():
-        pytest.skip(f"no recording {RECORDING}: set CAPAR_DATA to the folder that holds it")
-    for take in range(10):
-        table = read_labels(
-            folder / "csv" / f"subject0_take{take}_labels.csv", contradictions=LEFT_OUT
-        )
-        original = read_labels(
-            folder / "ground_truth" / "subject_0" / "task_1_k_cooking" / f"take_{take}.json",
-            contradictions=LEFT_OUT,
-        )
-        assert table.marks == original.marks
-
-
 Mark = tuple[str, int, int, str]
 
 MARKS: list[Mark] = [
@@ -139,10 +121,6 @@ WANTED = (
     Label("right_hand", 0.0, 0.4, "idle"),
     Label("right_hand", 0.4, 1.25, "reach"),
 )
-
-
-def test_a_tier_of_elan_is_a_link_and_its_annotations_are_labels(tmp_path: Path) -> None:
-    assert read_labels(elan(tmp_path, MARKS)).marks == WANTED
 
 
 @pytest.mark.parametrize("mode", ["normal", "short", "binary"])
