@@ -46,7 +46,6 @@ def heavy_figures(minutes: float, *, faces: int) -> dict[str, Any]:
         events += observer.push([frame])
     at_the_end, result = observer.finish()
     spent = time.process_time() - start + sum(os.times()[2:4])
-    assert result is not None
     late = [event.late_s for event in events if event.status is Status.SETTLED]
     offline = observe_measured(capture, measure(capture, known))
     told = {(each.ee, each.first, each.last, each.name, each.objects) for each in result.segments}
@@ -78,7 +77,7 @@ def work_figures(events: int) -> dict[str, Any]:
     """Processor time per event over very many events, without a result that grows."""
     period_s = 1.0
     short = _meeting(60.0, period_s)
-    observer = LiveObserver(short, calibrate(short), keep_result=False)
+    observer = LiveObserver(short, calibrate(short))
     names = body_names(short)
     frames = replayed(short)
     length, done, tenths, sizes = len(frames), 0, [], []
@@ -127,7 +126,6 @@ def memory_figures(minutes: float) -> dict[str, Any]:
     spent = time.process_time() - start + sum(os.times()[2:4])
     begin = time.process_time()
     _, result = observer.finish()
-    assert result is not None
     return {
         "recording [min]": minutes,
         "times real time": 60.0 * minutes / spent,

@@ -14,7 +14,7 @@ from capar.model.capture import Capture, Stream
 from capar.model.observation import Observation
 from capar.pipelines.live.frames import Poses, body_names, replayed, with_streams
 from capar.pipelines.live.ledgers import SegmentEvent
-from capar.pipelines.live.observer import LiveObserver, horizons_of
+from capar.pipelines.live.observer import LiveObserver
 from capar.pipelines.observation import observe_measured
 from capar.pipelines.trials import trial_of
 from extractors.calibration import calibrate
@@ -59,13 +59,11 @@ def live_run(name: str) -> LiveRun:
     """A capture played to the end; a frame is destroyed as soon as the next one follows."""
     capture = CAPTURES[name]()
     known = calibrate(capture)
-    horizons = horizons_of(known)
-    observer = LiveObserver(rig_of(capture), known, horizons=horizons)
+    observer = LiveObserver(rig_of(capture), known)
     events: list[SegmentEvent] = []
     for poses in vanishing(capture):
         events += observer.push([poses])
     at_the_end, result = observer.finish()
-    assert result is not None
     offline = observe_measured(capture, measure(capture, known))
     return LiveRun(capture, tuple(events), tuple(at_the_end), result, offline, observer)
 

@@ -13,56 +13,24 @@ from capar.cli.output import error_message
 from capar.model.errors import CaparError, UnknownNameError
 
 GROUPS = {
-    "Look at captures": {
-        "demo": "observe.demo",
-        "inspect": "captures.inspect",
-        "view": "captures.view",
-        "facts": "captures.facts",
-        "new-capture": "captures.new_capture",
-        "devices": "trackers.devices",
-        "record": "trackers.record",
-        "simulate": "trackers.simulate",
-    },
-    "Observe": {
-        "observe": "observe.observe",
-        "explain": "explain.explain",
-        "test": "evaluate.test",
-        "evaluate": "evaluate.evaluate",
-    },
-    "Ask the Actionary": {
-        "query": "ask.query",
-        "show": "ask.show",
-        "agent": "actionary.agents",
-        "object": "actionary.objects",
-        "correct": "actionary.correct",
-        "forget": "actionary.forget",
-        "check": "ask.check",
-    },
-    "Rules": {"rules": "rules.rules"},
-    "Language": {
-        "describe": "language.describe",
-        "parse": "language.parse",
-        "verb": "language.verb",
-        "lexicon": "language.lexicon",
-        "report": "language.reports",
-    },
-    "Bodies": {
-        "fit": "body.fit",
-        "perform": "body.perform",
-        "map": "body.map_command",
-        "regenerate": "regenerate.regenerate",
-        "roundtrip": "regenerate.roundtrip",
-    },
-    "Share": {
-        "export": "share.export",
-        "import": "share.import_",
-        "backup": "share.backup",
-        "serve": "ask.serve",
-    },
+    "Look at captures": "observe.demo captures.inspect captures.view captures.facts "
+    "captures.new_capture trackers.devices trackers.record trackers.simulate",
+    "Observe": "observe.observe explain.explain evaluate.test evaluate.evaluate",
+    "Ask the Actionary": "ask.query ask.show actionary.agent actionary.object_ actionary.correct "
+    "actionary.forget ask.check",
+    "Rules": "rules.rules",
+    "Language": "language.describe language.parse language.verb language.lexicon language.report",
+    "Bodies": "body.fit body.perform body.map_ regenerate.regenerate regenerate.roundtrip",
+    "Share": "share.export share.import_ share.backup ask.serve",
 }
-"""What each command is, by the heading under which the help lists it."""
+"""Where each command stands, by the heading under which the help lists it."""
 
-COMMANDS = {name: place for group in GROUPS.values() for name, place in group.items()}
+COMMANDS = {
+    place.partition(".")[2].rstrip("_").replace("_", "-"): (place, heading)
+    for heading, places in GROUPS.items()
+    for place in places.split()
+}
+"""Module and attribute of each command, and its heading, by its name."""
 
 
 class Commands(TyperGroup):
@@ -76,7 +44,7 @@ class Commands(TyperGroup):
         """The command of that name, if there is one."""
         if name not in COMMANDS:
             return None
-        module, _, attribute = COMMANDS[name].partition(".")
+        module, _, attribute = COMMANDS[name][0].partition(".")
         app = getattr(import_module(f"{__name__}.{module}"), attribute)
         if not isinstance(app, typer.Typer):
             function, app = app, typer.Typer()
@@ -91,10 +59,11 @@ class Commands(TyperGroup):
         """Write the commands under the headings of the table."""
         width = max(map(len, COMMANDS))
         limit = formatter.width - 6 - width
-        for heading, names in GROUPS.items():
+        for heading in GROUPS:
             rows = [
                 (f"{name:{width}}", self.get_command(ctx, name).get_short_help_str(limit))
-                for name in names
+                for name, (_, own) in COMMANDS.items()
+                if own == heading
             ]
             with formatter.section(heading):
                 formatter.write_dl(rows)
@@ -151,9 +120,7 @@ def main() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads spin, and sum in any order
     try:
         app()
-    except CaparError as error:
-        typer.echo(f"capar: {error}", err=True)
-        sys.exit(2)
-    except OSError as error:
-        typer.echo(f"capar: {error_message(error)}", err=True)
+    except (CaparError, OSError) as error:
+        message = error_message(error) if isinstance(error, OSError) else error
+        typer.echo(f"capar: {message}", err=True)
         sys.exit(2)

@@ -13,15 +13,15 @@ from capar.cli.options import Json, Place, Wait, require_actionary, rule_words
 from capar.cli.output import answer, check_writable, emit
 from capar.model.errors import UnknownNameError
 
-agents = typer.Typer(no_args_is_help=True, help="Who performs: declared, seen, and who is who.")
-objects = typer.Typer(no_args_is_help=True, help="What is known of objects, by their kinds.")
+agent = typer.Typer(no_args_is_help=True, help="Who performs: declared, seen, and who is who.")
+object_ = typer.Typer(no_args_is_help=True, help="What is known of objects, by their kinds.")
 
 Agent = Annotated[str, Argument(help="An agent, as `capar agent list` prints it.")]
 LABEL_COLUMNS = ("link", "start_s", "end_s", "label", "object")
 """Of a table of labels, as `capar evaluate` reads it."""
 
 
-@agents.command("new")
+@agent.command("new")
 def new_agent(
     name: Annotated[str, Argument(help="What the agent is called.")],
     kind: Annotated[str, Option(help="Its kind: man, woman, robot ...")] = "",
@@ -39,7 +39,7 @@ def new_agent(
     answer({"declared": name}, [f"declared {name}"], json=json)
 
 
-@agents.command("can")
+@agent.command("can")
 def agent_can(
     name: Agent,
     actions: Annotated[list[str], Argument(help="Actions that it is able to do.")],
@@ -51,7 +51,7 @@ def agent_can(
     _declare(actions, agent=name, actionary=actionary, wait_s=wait, json=json)
 
 
-@agents.command("list")
+@agent.command("list")
 def list_agents(actionary: Place = None, json: Json = False) -> None:
     """List every agent; one without a name is called by its capture."""
     from kb import Actionary
@@ -61,7 +61,7 @@ def list_agents(actionary: Place = None, json: Json = False) -> None:
     answer(found, found, json=json)
 
 
-@agents.command("show")
+@agent.command("show")
 def show_agent(name: Agent, actionary: Place = None, json: Json = False) -> None:
     """Show what is known of an agent, field by field."""
     from kb import Actionary
@@ -70,7 +70,7 @@ def show_agent(name: Agent, actionary: Place = None, json: Json = False) -> None
         _print_fields(name, opened.agent_profile(name), json=json)
 
 
-@agents.command("same")
+@agent.command("same")
 def same_agent(
     name: Agent,
     other: Annotated[str, Argument(help="The agent that is the same one.")],
@@ -87,7 +87,7 @@ def same_agent(
     answer({"agent": name, "joined": other}, [f"{other} is {name}"], json=json)
 
 
-@objects.command("list")
+@object_.command("list")
 def list_objects(actionary: Place = None, json: Json = False) -> None:
     """List every kind of object that was observed or declared."""
     from kb import Actionary
@@ -97,7 +97,7 @@ def list_objects(actionary: Place = None, json: Json = False) -> None:
     answer(found, found, json=json)
 
 
-@objects.command("can")
+@object_.command("can")
 def object_can(
     kind: Annotated[str, Argument(help="A kind of object, as `capar object list` has it.")],
     actions: Annotated[list[str], Argument(help="Actions that it can be used for.")],
@@ -109,7 +109,7 @@ def object_can(
     _declare(actions, kind=kind, actionary=actionary, wait_s=wait, json=json)
 
 
-@objects.command("show")
+@object_.command("show")
 def show_object(
     name: Annotated[str, Argument(help="A kind of object, or the name of an object.")],
     actionary: Place = None,

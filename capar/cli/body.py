@@ -1,6 +1,5 @@
 """Bodies: fit one to a capture, let a virtual one perform, map a performance to another."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -60,8 +59,7 @@ def fit(
     if mjcf:
         save(mjcf, mjcf_text(made.human))
     value = _residuals(made)
-    lines = [*_fit_lines(value), *(f"warning: {warning}" for warning in warnings)]
-    answer({**value, "warnings": warnings}, lines, json=json)
+    answer({**value, "warnings": warnings}, json=json)
 
 
 def _residuals(made: "Fit") -> dict[str, Any]:
@@ -95,25 +93,6 @@ def _residuals(made: "Fit") -> dict[str, Any]:
         "motion_s": round(float(made.times[-1] - made.times[0]), 4),
         "seconds": round(made.seconds, 3),
     }
-
-
-def _fit_lines(value: dict[str, Any]) -> Iterator[str]:
-    """The same for people."""
-    from capar.views.tables import aligned
-
-    rows = [("followed", "median [mm]", "95 % [mm]", "median [deg]", "lost [frames]")]
-    for place, row in value["sensors"].items():
-        angle = "-" if row["median_deg"] is None else f"{row['median_deg']:.2f}"
-        figures = (f"{row['median_mm']:.1f}", f"{row['p95_mm']:.1f}", angle)
-        rows.append((place, *figures, str(row["lost_frames"])))
-    yield from aligned(rows, right={1, 2, 3, 4})
-    yield f"median of all: {value['median_mm']:.1f} mm, stature {value['stature_m']:.2f} m"
-    for joint, share in value["at_limit"].items():
-        yield f"{joint} is at its limit for {share:.0%} of the time"
-    given = ", ".join(value["measures_given"]) or "none"
-    yield f"measures given: {given}; the others are estimated"
-    span, took = value["motion_s"], value["seconds"]
-    yield f"{value['frames']} frames, {span:.1f} s of motion, fitted in {took:.1f} s"
 
 
 def perform(
@@ -161,7 +140,7 @@ def perform(
     )
 
 
-def map_command(
+def map_(
     capture: Capture,
     agent: Annotated[str, Option(help="man, woman, child, or same (as recorded).")] = "same",
     output: NewBundle = None,
@@ -180,7 +159,7 @@ def map_command(
     Nothing is planned: no grip is fitted to the hand, and no obstacle is avoided. Every gate is
     printed, and how far hands and things are from their recorded ways.
     """
-    from capar.cli.regenerate import quality_lines, quality_value
+    from capar.cli.regenerate import quality_value
     from capar.pipelines.round_trips import SAME, body, observed_source
     from capar.regeneration import map_directly
     from capar.regeneration.captures import capture_of, write_motion
@@ -194,6 +173,6 @@ def map_command(
     if output:
         name = agent if agent != SAME else source.capture.agent.name
         write_motion(motion, capture_of(motion, name=source.capture.name, agent=name), output)
-    answer(quality_value(motion, quality), quality_lines(motion, quality), json=json)
+    answer(quality_value(motion, quality), json=json)
     if output and not json:
         typer.echo(f"wrote {output}", err=True)

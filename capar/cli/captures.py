@@ -8,25 +8,12 @@ import typer
 from typer import Argument, Option
 
 from capar.cli.options import Beside, Capture, Json, ProfileName, Rules, Set, Steady, rule_base
-from capar.cli.output import console, emit, print_json, print_table, save
+from capar.cli.output import answer, console, emit, print_json, save
 from capar.model.errors import CaparError, FileError
 
 if TYPE_CHECKING:
     from capar.model.capture import Capture as CaptureData
     from capar.model.capture import Notice, Stream
-
-STREAM_FIGURES = {
-    "s": ("seconds", 2),
-    "Hz": ("rate_hz", 1),
-    "jitter ms": ("jitter_ms", 1),
-    "lost": ("lost", 0),
-    "longest gap s": ("longest_gap_s", 2),
-    "rest mm": ("noise_mm", 2),
-    "rest deg": ("noise_deg", 2),
-}
-"""Columns of streams: the key of a report, and decimals."""
-
-PAIR_FIGURES = {"least m": ("least_m", 3), "at s": ("at_s", 2), "near for s": ("near_s", 2)}
 
 
 def inspect(
@@ -56,10 +43,9 @@ def inspect(
     path = Path(place)
     bundled = path.suffix == ".toml" or not path.exists() or (path / "capture.toml").is_file()
     report = _of_capture(place) if bundled else _of_file(path)
-    if json:
-        print_json(report, sort_keys=True)
-    else:
-        _print_report(report)
+    if not json:
+        report["notices"] = [f"{told['code']}: {told['message']}" for told in report["notices"]]
+    answer(report, json=json, sort_keys=True)
 
 
 def _of_capture(place: str) -> dict[str, Any]:
@@ -131,36 +117,6 @@ def _of_file(path: Path) -> dict[str, Any]:
         "sources": [{"path": recording.source.path, "format": recording.format}],
     }
     return head | _surveyed(streams, kinds)
-
-
-def _print_report(report: dict[str, Any]) -> None:
-    out = console()
-    when = f"recorded {report['recorded_at']}" if report["recorded_at"] else "no date of recording"
-    out.print(f"[bold]{report['name']}[/]: {report['frames']} frames, {when}")
-    rows = [
-        (
-            stream["name"], stream["kind"],
-            *(_figure(stream[key], digits) for key, digits in STREAM_FIGURES.values()),
-            " x ".join(f"{length:.2f}" for length in stream["range_m"] or ()) or "-",
-        )
-        for stream in report["streams"]
-    ]  # fmt: skip
-    print_table(("stream", "kind", *STREAM_FIGURES, "range m"), rows, names={0})
-    pairs = [
-        (pair["first"], pair["second"],
-         *(_figure(pair[key], digits) for key, digits in PAIR_FIGURES.values()))
-        for pair in report["pairs"]
-    ]  # fmt: skip
-    if pairs:
-        print_table(("nearest pairs", "", *PAIR_FIGURES), pairs, names={0, 1})
-    for name, text in report.get("shapes", {}).items():
-        out.print(f"shape of {name}: {text}", highlight=False)
-    for notice in report["notices"]:
-        out.print(f"[yellow]{notice['code']}[/]: {notice['message']}", highlight=False)
-
-
-def _figure(value: float | None, digits: int) -> str:
-    return "-" if value is None else f"{value:.{digits}f}"
 
 
 def new_capture(

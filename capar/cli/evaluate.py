@@ -62,15 +62,11 @@ def evaluate(
     Label files are CSV, JSON, ELAN (.eaf), Praat (.TextGrid), or the JSON of the KIT Bimanual
     Actions Dataset. Their columns: link,start_s,end_s,label (actions); body,other,start_s,end_s
     (contacts); object,start_s,end_s (carries); hand,event,start_s,end_s (events). In ELAN and
-    Praat a tier is a link or body, a text its label, the other body or the object. Labels of one
-    hand are enough: what bears no labels is not counted.
-
-    Without --mapping, labels of actions are our own names, as `capar correct --labels` writes them.
+    Praat a tier is a link or body. Without --mapping, labels of actions are our own names.
 
     Actions: frame-wise accuracy and macro F1, segmental F1 at 10, 25 and 50 % overlap, edit
-    score, and errors of onset and offset of the segments matched at 10 %. Contacts: frame-wise
-    precision, recall and F1. Carries: printed starts and ends near the labels. Events: what was
-    seen and found.
+    score, and errors of onset and offset. Contacts: frame-wise precision, recall and F1.
+    Carries: printed starts and ends near the labels. Events: what was seen and found.
     """
     from capar.evaluation.metrics import report
     from capar.evaluation.plan import Plan, read_mapping, read_pairs, read_plan
@@ -230,39 +226,31 @@ def test(
 ) -> None:
     """Check claims about captures.
 
-    Exits with 1 if a claim does not hold, with 2 if one cannot be judged. A file
-    drink.motion.toml names captures, from its own folder on, and what is expected of each:
+    Exits with 1 if a claim does not hold, with 2 if one cannot be judged. A *.motion.toml names
+    captures from its own folder on, and what is expected of each; a rules folder and a profile may
+    be stated.
 
     \b
         captures = ["drink_*", "cups:take3", "mugs:*"]
-        profile = "thesis"    # if not extended
-        rules = "mine"        # a folder of rules, if not the usual
-    \b
         [[expect]]
         that = "right_hand MoveObjTo(mug, head)"
 
-    A capture is a folder, FOLDER:TAKE, or with FOLDER:* each of its takes.
-    Each claim has one of these forms:
+    A claim is one of these:
 
     \b
-        EVENT                    right_hand MoveObjTo(mug, head)
-        no EVENT                 no mug touches head
-        EVENT before EVENT       right_hand Reach before right_hand touches mug
-          (or: after, while, begins before, ends before)
+        EVENT; no EVENT          right_hand MoveObjTo(mug, head); no mug touches head
+        EVENT before EVENT       or after, while, begins before, ends before
         EVENT lasts A to B s     right_hand MoveObj(mug) lasts 0.1 to 2 s
         END_EFFECTOR: STEPS      right_hand: Reach(mug), ..., ResumePosture
 
-    and each event one of these; _ is any object, and a general name fits what specialises it:
+    and an event one of these; _ is any object, and a general name fits what specialises it:
 
     \b
         END_EFFECTOR STEP        right_hand MoveObjTo(_, head)
-        several of them do STEP  both hands do Lift(box)
-                                 left_hand and right_hand do Lift(box)
-        BODY touches BODY        mug touches head
-        BODY lets go of BODY     right_hand lets go of mug
+        several of them do STEP  both hands do Lift(box); left_hand and right_hand do Lift(box)
+        BODY touches BODY        or lets go of: right_hand lets go of mug
         OBJECT moves             mug moves
-        SENSOR looks at OBJECT   head looks at mug
-        ... away from OBJECT     head looks away from mug
+        SENSOR looks at OBJECT   or looks away from: head looks at mug
 
     What no rule, object or sensor is called is a mistake, also after "no". Under pytest each
     claim of each capture is a test of its own.

@@ -264,10 +264,10 @@ def import_words(
     answer(figures, lines, json=json, sort_keys=True)
 
 
-reports = typer.Typer(no_args_is_help=True, help="Reports over the rule base and an Actionary.")
+report = typer.Typer(no_args_is_help=True, help="Reports over the rule base and an Actionary.")
 
 
-@reports.callback()
+@report.callback()
 def _reports() -> None:
     """Reports over the rule base and an Actionary."""
 
@@ -284,7 +284,7 @@ class Format(StrEnum):
     SVG = "svg"
 
 
-@reports.command()
+@report.command()
 def linguistics(
     actionary: options.Place = None,
     form: Annotated[Format, Option("--format", help="svg is the drawing alone.")] = Format.TEXT,

@@ -400,7 +400,6 @@ def _run(
             raise CaparError("no frames came: nothing was observed")
         events, seen = observer.finish()
         _print_events(events, options, sends)
-    assert seen is not None
     if options.json:
         whole = {"event": "observation", "observation": codec.loads(to_json(seen))}
         typer.echo(codec.dumps(whole, ensure_ascii=False))

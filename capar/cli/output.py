@@ -4,7 +4,7 @@ import dataclasses
 import errno
 import os
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from shutil import copymode
@@ -64,13 +64,56 @@ def _plain(value: Any) -> Any:
     return str(value)
 
 
-def answer(value: Any, lines: Iterable[object], *, json: bool, sort_keys: bool = False) -> None:
-    """A value as JSON, or lines of text for people, which are made only if they are printed."""
+def answer(
+    value: Any, lines: Iterable[object] | None = None, *, json: bool, sort_keys: bool = False
+) -> None:
+    """A value as JSON, or lines of text for people: by default its keys, lists and tables."""
     if json:
         print_json(value, sort_keys=sort_keys)
         return
-    for line in lines:
+    for line in _value_lines(value, "") if lines is None else lines:
         typer.echo(line)
+
+
+def _value_lines(value: Mapping[str, Any], indent: str) -> Iterator[str]:
+    """Keys with what they have: a text, nested keys, a line each, or a table of equal rows."""
+    from capar.views.tables import aligned
+
+    for key, item in value.items():
+        rows = list(item) if isinstance(item, list | tuple) else []
+        if isinstance(item, Mapping) and item:
+            rows = [{key: name, **row} for name, row in item.items() if isinstance(row, Mapping)]
+            if not _are_flat(rows) or len(rows) < len(item):
+                yield f"{indent}{key}:"
+                yield from _value_lines(item, f"{indent}  ")
+                continue
+        if rows and isinstance(rows[0], Mapping):
+            yield f"{indent}{key}:"
+            if _are_flat(rows):
+                cells = [[_text(cell) for cell in row.values()] for row in rows]
+                yield from (indent + line for line in aligned([list(rows[0]), *cells]))
+            else:
+                for row in rows:
+                    yield from _value_lines(row, f"{indent}  ")
+        elif rows:
+            yield from (f"{indent}{key}: {_text(row)}" for row in rows)
+        elif item not in (None, "", (), [], {}):
+            yield f"{indent}{key}: {_text(item)}"
+
+
+def _are_flat(rows: Iterable[Mapping[str, Any]]) -> bool:
+    """Whether rows have texts, numbers and lists of these alone."""
+    cells = (cell for row in rows for cell in row.values())
+    parts = (part for cell in cells for part in (cell if isinstance(cell, list) else [cell]))
+    return not any(isinstance(part, Mapping | list) for part in parts)
+
+
+def _text(cell: Any) -> str:
+    if isinstance(cell, bool):
+        return "yes" if cell else "NO"
+    if isinstance(cell, list | tuple):
+        return ", ".join(map(_text, cell))
+    return "" if cell is None else f"{cell:.4g}" if isinstance(cell, float) else str(cell)
 
 
 def console() -> "Console":

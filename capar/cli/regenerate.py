@@ -1,6 +1,6 @@
 """Perform a recorded action, or what is asked for, on another body, and round trips."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -14,17 +14,14 @@ from capar.cli.output import answer, check_new_folder, print_json
 from capar.model.errors import CaparError
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from capar.body.human import Human
     from capar.model.capture import Capture as CaptureData
     from capar.pipelines.instantiation import Asked
-    from capar.pipelines.preparation import Prepared, World
+    from capar.pipelines.preparation import World
     from capar.pipelines.recordings import Performed, Recording
     from capar.pipelines.round_trips import Trip
     from capar.regeneration.efforts import Effort
     from capar.regeneration.forces import ForceKind
-    from capar.regeneration.hand_overs import JointMotion
     from capar.regeneration.motion import Motion
     from capar.regeneration.quality import Gate, Quality
     from capar.regeneration.roles import Role
@@ -70,9 +67,9 @@ class _Task(NamedTuple):
             )
         return self.agents[0]
 
-    def finish(self, value: Any, lines: Iterable[object]) -> None:
-        """Print the answer for machines, or text for people and where the files are."""
-        answer(value, lines, json=self.json)
+    def finish(self, value: Any) -> None:
+        """Print the answer for machines, or as text and where the files are."""
+        answer(value, json=self.json)
         if self.folder and not self.json:
             typer.echo(f"wrote {self.folder}", err=True)
 
@@ -228,8 +225,7 @@ def _perform_alone(task: _Task, trial: "CaptureData") -> None:
     where = read_scene(task.scene, source.scene) if task.scene else source.scene
     stepped, done = _act(task, source, body(task.agent, source), where)
     _write(task, [(source.capture.name, done)], stepped)
-    lines = [*_step_lines(stepped), *(["the action itself:"] if stepped else ()), *_lines(done)]
-    task.finish(_value(done) | _steps_value(stepped, passed=done.quality.passed), lines)
+    task.finish(_value(done) | _steps_value(stepped, passed=done.quality.passed))
 
 
 def _act(
@@ -301,20 +297,29 @@ def _perform_instance(task: _Task, what: str) -> None:
     stepped, main = _act(task, source, instance.asked.human, place, names)
     stages = [(done.stage.way.recording.name, done) for done in prepared.done]
     _write(task, [*stages, (recording.name, main)], stepped)
-    told = (*notes, *instance.notes)
     passed = main.quality.passed and all(done.quality.passed for done in prepared.done)
     value = {
         "action": what,
         "recording": recording.name,
         "objects": [asdict(binding) for binding in instance.bindings],
-        **_value(main, told),
+        "plan": {
+            "needed": prepared.wanted,
+            "lacking": prepared.lacking,
+            "impossible": prepared.tried,
+            "stages": [
+                {
+                    "recording": done.stage.way.recording.name,
+                    "steps": [asdict(step) for step in done.stage.steps],
+                    **quality_value(done.motion, done.quality),
+                }
+                for done in prepared.done
+            ],
+        },
+        **_value(main, (*notes, *instance.notes)),
         "passed": passed,
-        "plan": _plan_value(prepared),
         **_steps_value(stepped, passed=passed),
     }
-    lines = [*told, *_plan_lines(prepared, stepped), *_step_lines(stepped)]
-    lines += ["the action itself:"] if prepared.done or stepped else []
-    task.finish(value, [*lines, *_lines(main)])
+    task.finish(value)
 
 
 @contextmanager
@@ -423,45 +428,6 @@ def _write(
         write_motion(done.motion, bundle, folder if alone else folder / f"{number + last}_{name}")
 
 
-def _plan_value(prepared: "Prepared") -> dict[str, Any]:
-    """What was planned and done before the action, for machines."""
-    stages = [
-        {
-            "recording": done.stage.way.recording.name,
-            "steps": [asdict(step) for step in done.stage.steps],
-            **quality_value(done.motion, done.quality),
-        }
-        for done in prepared.done
-    ]
-    return {
-        "needed": prepared.wanted,
-        "lacking": prepared.lacking,
-        "impossible": prepared.tried,
-        "stages": stages,
-    }
-
-
-def _plan_lines(prepared: "Prepared", stepped: "Approach | None") -> "Iterator[str]":
-    from capar.pipelines.preparation import told
-
-    if not prepared.done and stepped is None:
-        yield "plan: nothing has to be prepared"
-    yield from (f"plan: {told(condition)} does not hold yet" for condition in prepared.lacking)
-    yield from (f"plan: not possible is {why}" for why in prepared.tried)
-    steps = [(done, step) for done in prepared.done for step in done.stage.steps]
-    for number, (done, step) in enumerate(steps, start=1):
-        where = ""
-        if step.place:
-            where = f" to ({step.place[0]:.2f}, {step.place[1]:.2f}) m on {step.support!r}"
-        name = done.stage.way.recording.name
-        yield f"{number:3}. {step.hand} hand: {step.action} {step.thing}{where} (as in {name})"
-    for done in prepared.done:
-        part, thing = done.stage.way.part, done.stage.steps[0].thing
-        as_part = f", {thing!r} in the part of {part!r}" if part != thing else ""
-        yield f"prepared as in {done.stage.way.recording.name}{as_part}:"
-        yield from quality_lines(done.motion, done.quality)
-
-
 def _perform_request(task: _Task, text: str) -> None:
     """Perform what a text asks for, one action after the other, and say how good each is."""
     from capar.body.anthropometry import measures_of, ready_made
@@ -499,7 +465,7 @@ def _perform_request(task: _Task, text: str) -> None:
         }
         for each in made
     ]
-    task.finish({"performed": values}, [line for m in made for line in (*m.notes, *_lines(m))])
+    task.finish({"performed": values})
 
 
 def _recordings(task: _Task) -> "tuple[Recording, ...]":
@@ -531,42 +497,37 @@ def _perform_jointly(task: _Task, capture: "CaptureData") -> None:
     performers = {
         name: quality_value(motion, made.qualities[name]) for name, motion in made.motions.items()
     }
-    value = {"passed": made.passed, "performers": performers, "gates": _gates_value(made.gates)}
-    task.finish(value, _joint_lines(made))
-
-
-def _joint_lines(made: "JointMotion") -> "Iterator[str]":
-    """The gates of every body and between them, and the notes, each once."""
-    notes: dict[str, None] = {}
-    for name, motion in made.motions.items():
-        yield f"{name}:"
-        yield from quality_lines(motion, made.qualities[name], notes=())
-        notes |= dict.fromkeys(
-            note if note in notes or not note.startswith("the ") else f"{name}: {note}"
-            for note in motion.plan.notes
-        )
-    yield "together:"
-    yield from _gate_lines(made.gates, motion.plan.source.times)
-    yield from (f"note: {note}" for note in notes)
+    gates = _gates_value(made.gates, next(iter(made.motions.values())).plan.source.times)
+    value = {"passed": made.passed, "performers": performers, "gates": gates}
+    task.finish(value)
 
 
 def quality_value(motion: "Motion", quality: "Quality") -> dict[str, Any]:
-    """Gates and notes of a motion, for machines."""
+    """Gates, what else was measured, and notes of a motion."""
     return {
         "passed": quality.passed,
-        "gates": _gates_value(quality.gates),
-        "told": quality.told,
+        "gates": _gates_value(quality.gates, motion.plan.source.times),
+        "told": [asdict(measured) for measured in quality.told],
         "notes": motion.plan.notes,
     }
 
 
-def _gates_value(gates: "Sequence[Gate]") -> list[dict[str, Any]]:
-    keys = ("name", "limit", "unit", "frame", "bodies")
+def _gates_value(gates: "Sequence[Gate]", times: Any) -> list[dict[str, Any]]:
+    """Gates, each with where it was worst."""
     return [
-        {**{key: getattr(gate, key) for key in keys},
-         "value": round(gate.value, 4), "passed": bool(gate.passed)}
+        {
+            "name": gate.name,
+            "value": round(gate.value, 4),
+            "demanded": ">=" if gate.at_least else "<=",
+            "limit": gate.limit,
+            "unit": gate.unit,
+            "passed": bool(gate.passed),
+            "at_s": round(float(times[gate.frame]), 3) if gate.frame >= 0 else None,
+            "frame": gate.frame,
+            "bodies": gate.bodies,
+        }
         for gate in gates
-    ]  # fmt: skip
+    ]
 
 
 def _value(done: "Performed", notes: Sequence[str] = ()) -> dict[str, Any]:
@@ -590,54 +551,9 @@ def _steps_value(stepped: "Approach | None", *, passed: bool) -> dict[str, Any]:
             "left_m": stepped.aside_m,
             "strides": [{"foot": s.side, "by_m": s.by} for s in stepped.steps.strides],
             "impossible": stepped.tried,
-            "gates": _gates_value(stepped.quality.gates),
+            "gates": _gates_value(stepped.quality.gates, stepped.steps.times),
         },
     }
-
-
-def _lines(done: "Performed") -> "Iterator[object]":
-    """A performance for people."""
-    yield from quality_lines(done.motion, done.quality)
-    if done.effort:
-        yield done.effort
-
-
-def quality_lines(
-    motion: "Motion", quality: "Quality", notes: Iterable[str] | None = None
-) -> "Iterator[str]":
-    """Every gate with its limit and where it was worst, and the notes."""
-    yield from _gate_lines(quality.gates, motion.plan.source.times)
-    for measured in quality.told:
-        value = f"{measured.value:.1f} {measured.unit}"
-        yield f"{measured.name}: {value} ({measured.bodies}), not demanded"
-    yield from (f"note: {note}" for note in (motion.plan.notes if notes is None else notes))
-
-
-def _gate_lines(
-    gates: "Sequence[Gate]", times: "Sequence[float] | np.ndarray"
-) -> "tuple[str, ...]":
-    from capar.views.tables import aligned
-
-    rows = [("gate", "value", "", "limit", "unit", "passed", "worst at", "")]
-    for gate in gates:
-        at = f"{times[gate.frame]:.2f} s" if gate.frame >= 0 else ""
-        sign, passed = ">=" if gate.at_least else "<=", "yes" if gate.passed else "NO"
-        figures = (f"{gate.value:.3f}", sign, f"{gate.limit:.2f}")
-        rows.append((gate.name, *figures, gate.unit, passed, at, gate.bodies))
-    return aligned(rows, right={1, 3})
-
-
-def _step_lines(stepped: "Approach | None") -> "Iterator[str]":
-    """The steps that were needed, if any, and their gates."""
-    if stepped is None:
-        return
-    yield f"plan: from the given place {stepped.why}"
-    yield from (f"plan: not possible is {why}" for why in stepped.tried)
-    for number, stride in enumerate(stepped.steps.strides, start=1):
-        x, y = stride.by
-        yield f"{number:3}. {stride.side} foot: Step by ({x:+.2f}, {y:+.2f}) m"
-    yield "the steps:"
-    yield from _gate_lines(stepped.quality.gates, stepped.steps.times)
 
 
 def roundtrip(

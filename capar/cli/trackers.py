@@ -2,7 +2,6 @@
 
 import math
 import time
-from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -34,14 +33,7 @@ def devices(
         report = _watched(find_tracker(address), seconds)
     else:
         report = {"drivers": EXAMPLES, "ports": find_ports()}
-    answer(report, _lines(report) if address else _drivers(report), json=json, sort_keys=True)
-
-
-def _drivers(report: dict[str, Any]) -> Iterator[str]:
-    yield "drivers, each with an address:"
-    yield from (f"  {name:<11} {example}" for name, example in report["drivers"].items())
-    yield "serial ports:" if report["ports"] else "no serial ports"
-    yield from (f"  {port:<11} {what}" for port, what in report["ports"].items())
+    answer(report, json=json, sort_keys=True)
 
 
 def _watched(tracker: "LiveTracker", seconds: float) -> dict[str, Any]:
@@ -71,20 +63,6 @@ def _watched(tracker: "LiveTracker", seconds: float) -> dict[str, Any]:
 def _position(position: Any) -> list[float] | None:
     """A position, or None where it is lost; JSON has no NaN."""
     return [float(each) for each in position] if all(map(math.isfinite, position)) else None
-
-
-def _lines(report: dict[str, Any]) -> Iterator[str]:
-    details = ", ".join(f"{name} {value}" for name, value in report["details"].items())
-    yield f"{report['kind']} {report['model']} {details}".rstrip()
-    counts = report["counts"]
-    yield (
-        f"{counts['frames']} frames at {report['rate_hz']:.1f} Hz, {counts['lost_records']} poses "
-        f"lost, {counts['refused_records']} refused, {counts['dropped_bytes']} bytes dropped"
-    )
-    for name, position in report["positions_m"].items():
-        place = "no position" if position is None else " ".join(f"{v:7.3f}" for v in position)
-        yield f"  {name:<16} {place}"
-    yield from report["events"]
 
 
 def record(

@@ -227,7 +227,7 @@ def test_the_command_says_what_is_left(touching: Performed, tmp_path: Path) -> N
     told = CliRunner().invoke(app, ["fit", str(tmp_path / "touches")])
     assert told.exit_code == 0, told.output
     assert "right_elbow" in told.output
-    assert "fitted in" in told.output
+    assert "median_mm" in told.output
     asked = CliRunner().invoke(app, ["fit", str(tmp_path / "touches"), "--json"])
     answer = json.loads(asked.output)
     assert set(answer["sensors"]) == set(places())

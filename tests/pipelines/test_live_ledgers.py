@@ -28,21 +28,17 @@ from capar.pipelines.live.frames import (
     FrameBuffer,
     Poses,
     body_names,
-    body_rows,
     replayed,
 )
 from capar.pipelines.live.ledgers import FactLedger, RuleMemory
-from capar.pipelines.live.observer import FirstMotion
 from capar.pipelines.live.rule_process import RuleProcess, inferred
 from capar.pipelines.live.undecided import (
     Handling,
-    awaited,
     nameless,
     out_of_sight,
     undecided,
 )
 from capar_rules.engine.profiles import profile
-from extractors.calibration import calibrate
 from extractors.devices.tracker import Description, Frame
 from extractors.measure import measure
 
@@ -238,32 +234,3 @@ def test_what_a_hand_does_with_a_thing_that_is_out_of_sight_is_undecided_for_a_w
     assert out_of_sight(handling(351, 150)) == {}
     assert handling(351, 150).sure == 351
     assert out_of_sight(handling(160, 155)) == {}
-
-
-def test_a_thing_whose_first_motion_decides_is_watched_until_it_is_beyond_its_floor() -> None:
-    rig = pick_and_place()
-    known = calibrate(rig)
-    cup, table = Touching("hand", "thing", 5, 9), Touching("hand", "table", 4, 9)
-    handling = Handling((cup, table), (), {"thing"}, last=9, margin=15, longest=200)
-    assert awaited(handling) == {"thing": 5}
-    buffer = FrameBuffer(rig_of(rig), 50)
-    frames = replayed(rig)[:10]
-    for frame in frames:
-        buffer.push(frame)
-    watched = FirstMotion(known, body_rows(rig))
-    assert not watched.is_seen(frames[-1])
-    watched.await_(buffer.window(10), awaited(handling))
-    row = body_rows(rig)["object thing"]
-    floor_m = known.tag_object("thing").motion_floor_m
-    near, far = (_displaced(frames[-1], row, way * floor_m) for way in (0.9, 1.1))
-    assert not any(watched.is_seen(near) for _ in range(50))
-    seen = [watched.is_seen(far) for _ in range(10)]
-    least = 1 + round(0.05 / known.step_s)
-    assert seen == [False] * (least - 1) + [True] * (11 - least)
-    assert not watched.is_seen(near)
-
-
-def _displaced(frame: Poses, row: int, way_m: float) -> Poses:
-    positions = frame.positions.copy()
-    positions[row, 2] += way_m
-    return replace(frame, positions=positions)

@@ -60,15 +60,14 @@ class Window:
 
 
 class FrameBuffer:
-    """Holds the last frames of all bodies of a rig, and all of them on disk if they are kept.
+    """Holds the last frames of all bodies of a rig, and all of them on disk.
 
     Args:
         rig: Bodies, shapes, agents; the poses of its streams are not read.
         longest: Most frames that are asked for.
-        kept: Whether the whole recording is kept; memory does not grow with it.
     """
 
-    def __init__(self, rig: Capture, longest: int, *, kept: bool = False) -> None:
+    def __init__(self, rig: Capture, longest: int) -> None:
         self.rig = rig
         self.longest = longest
         self.count = 0
@@ -77,7 +76,7 @@ class FrameBuffer:
         self._bodies = body_names(rig)
         self._table = np.empty((2 * longest, 1 + 7 * len(self._bodies)))
         self._filled = 0
-        self._file = TemporaryFile() if kept else None  # noqa: SIM115
+        self._file = TemporaryFile()  # noqa: SIM115
 
     def push(self, poses: Poses) -> None:
         """Add a frame.
@@ -100,8 +99,7 @@ class FrameBuffer:
             self._table[: self.longest] = self._table[-self.longest :].copy()
             self._filled = self.longest
         self._table[self._filled] = poses.row()
-        if self._file is not None:
-            self._file.write(self._table[self._filled].tobytes())
+        self._file.write(self._table[self._filled].tobytes())
         self._filled += 1
         self.count += 1
 
@@ -111,14 +109,12 @@ class FrameBuffer:
         capture = _moved(self.rig, self._table[begin : self._filled])
         return Window(self.count - (self._filled - begin), capture)
 
-    def recording(self) -> Capture | None:
-        """All frames as a capture; None if they were not kept.
+    def recording(self) -> Capture:
+        """All frames as a capture.
 
         Raises:
             CaptureError: There are fewer than two.
         """
-        if self._file is None:
-            return None
         if self.count < 2:
             raise CaptureError("a live recording of fewer than two frames: nothing can be observed")
         self._file.seek(0)

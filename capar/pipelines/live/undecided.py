@@ -114,15 +114,6 @@ def undecided(handling: Handling) -> dict[str, int]:
     )
 
 
-def awaited(handling: Handling) -> dict[str, int]:
-    """The objects whose first motion decides, and the frame at which each is touched first."""
-    return _earliest(
-        (own.other, own.first)
-        for own in handling.going()
-        if handling.besides(own) or handling.may_be_blow(own)
-    )
-
-
 def nameless(handling: Handling) -> dict[str, int]:
     """The first frame of each end-effector about which too much is open to announce anything."""
     parting = [name for name in handling.arriving if _may_part(handling, name)]
