@@ -30,9 +30,10 @@ check: $(VENV)/developing  ## Style, types and the import contract, as the tests
 bench: $(VENV)/developing  ## Ratios side by side; takes more than an hour.
 	for each in benchmarks/*.py; do $(VENV)/bin/python $$each || exit 1; done
 
-docs: $(VENV)/developing  ## What is written from code: the reference of capture.toml, terms of facts.
+docs: $(VENV)/developing  ## What is written from code: the reference of capture.toml, terms of facts, inputs of rules.
 	$(VENV)/bin/python -m extractors.readers.schema.reference docs/capture-toml.md
 	$(VENV)/bin/python -m ontology.fact_kinds
+	$(VENV)/bin/python -m capar_rules.inputs
 
 develop: $(VENV)/developing  ## An editable install with everything for development.
 
