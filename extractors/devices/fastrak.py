@@ -188,7 +188,7 @@ class FastrakSimulator(SerialSimulator[SimulatedLine]):
             command = bytes(line.commands[:size])
             del line.commands[:size]
             if code == "P":
-                line.poll_at_s = time.monotonic() + self._faults.reply_delay_s
+                line.poll_at_s = time.monotonic()
             elif code in "Cc":
                 self._streaming = code == "C"
                 if not self._streaming:

@@ -434,7 +434,7 @@ class FlockSimulator(SerialSimulator[_BirdLine]):
             line.streaming = False
             line.forget()
         elif code == POINT:
-            line.poll_at_s = now + self._faults.reply_delay_s
+            line.poll_at_s = now
         elif code == STREAM:
             line.streaming = True
         elif code in EVERY_BY_COMMAND:

@@ -118,9 +118,6 @@ class Faults:
     wrong_address_share: float = 0.0
     """Share of the records that carry the address of a bird that is not there."""
 
-    reply_delay_s: float = 0.0
-    """How much later than usual a poll is answered [s]."""
-
     error: int = 0
     """Error code that a flock or a MotionStar reports."""
 

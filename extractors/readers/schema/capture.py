@@ -197,46 +197,44 @@ class Tracked(Traits):
     file: str | None = key(
         "Name under ``[files]``; needed if several files have the name.",
         None,
-        beside=("body", "markers"),
+        beside="body markers",
     )
     body: TextOrTexts | None = key(
         "Name of the body or joint in the file; or several names or patterns with *, one "
         "recorded after the other.",
         None,
-        apart=("markers",),
+        apart="markers",
     )
     markers: list[str] | None = key("Three or more markers that keep their distances.", None)
     residual_m: float = key(
         "Largest median distance of the markers from their rigid places.",
         0.010,
         unit="m",
-        beside=("markers",),
+        beside="markers",
     )
     arrangement: dict[str, Vector] | None = key(
         "Place of each marker in the body's frame [m]; else fitted to the recording.",
         None,
-        beside=("markers",),
-        apart=("origin", "axes"),
+        beside="markers",
+        apart="origin axes",
     )
     origin: list[str] = key(
-        "Markers whose mean is the frame's origin; else the mean of all.", [], beside=("markers",)
+        "Markers whose mean is the frame's origin; else the mean of all.", [], beside="markers"
     )
     axes: Annotated[
         dict[Literal["x", "y", "z"], Pair] | None, Field(min_length=2, max_length=2)
     ] = key(
         "Two axes, each from one marker to another; the second is made square to the first.",
         None,
-        beside=("markers",),
+        beside="markers",
     )
     extend: Literal["none", "rest"] = key(
         "``rest``: before and after its recording the body stays where it was.",
         "none",
-        beside=("body", "markers"),
+        beside="body markers",
     )
     offset: Pose | None = key(
-        "Pose of the sensor or object in the recorded body's frame.",
-        None,
-        beside=("body", "markers"),
+        "Pose of the sensor or object in the recorded body's frame.", None, beside="body markers"
     )
 
 
@@ -289,37 +287,37 @@ class ObjectEntry(Tracked, ObjectTraits):
         "x and y only, where ``top_at_bottom_of`` gives the height.",
         None,
         unit="m",
-        apart=("body", "markers"),
+        apart="body markers",
     )
     orientation: Quaternion | None = key(
         "Unit quaternion w x y z in the world, whose z axis points up.",
         None,
-        beside=("position",),
-        apart=("body", "markers", "top_at_bottom_of"),
+        beside="position",
+        apart="body markers top_at_bottom_of",
     )
     top_at_bottom_of: str | None = key(
         "Object that rests on this one, or a pattern with *: the upper side is put at its "
         "lowest point.",
         None,
-        apart=("body", "markers"),
+        apart="body markers",
     )
     at_s: float | None = key(
         "When that object rests on it; from the end if negative.",
         None,
         unit="s",
-        beside=("top_at_bottom_of",),
+        beside="top_at_bottom_of",
     )
     of: Literal["median", "lowest"] = key(
-        "Which height to take of several objects.", "median", beside=("top_at_bottom_of",)
+        "Which height to take of several objects.", "median", beside="top_at_bottom_of"
     )
     turn_deg: float = key(
-        "Rotation about the vertical.", 0.0, unit="deg", beside=("top_at_bottom_of",)
+        "Rotation about the vertical.", 0.0, unit="deg", beside="top_at_bottom_of"
     )
     surface_m: float | None = key(
         "Height of the bearing surface in its own frame; its highest point if not given.",
         None,
         unit="m",
-        beside=("top_at_bottom_of",),
+        beside="top_at_bottom_of",
     )
 
 
@@ -354,11 +352,9 @@ class ManyObjects(ObjectTraits):
     kinds: dict[str, ObjectKind] = key(
         "Kinds by how names begin; bodies of none are counted and left out.", {}
     )
-    touched_by: str = key(
-        "A sensor that touches each by distance.", "", beside=("touched_within_m",)
-    )
+    touched_by: str = key("A sensor that touches each by distance.", "", beside="touched_within_m")
     touched_within_m: float | None = key(
-        "At this distance of origins or nearer.", None, unit="m", beside=("touched_by",)
+        "At this distance of origins or nearer.", None, unit="m", beside="touched_by"
     )
 
 

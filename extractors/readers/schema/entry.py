@@ -128,8 +128,8 @@ def key(
     default: Any = PydanticUndefined,
     *,
     unit: str = "",
-    beside: tuple[str, ...] = (),
-    apart: tuple[str, ...] = (),
+    beside: str = "",
+    apart: str = "",
 ) -> Any:
     """The field of a key.
 
@@ -137,11 +137,11 @@ def key(
         meaning: One or two sentences, with what holds where the key is not given.
         default: Its value then; without one it must be given.
         unit: The unit of its numbers.
-        beside: Keys of which one must be given with it.
+        beside: Keys of which one must be given with it, parted by spaces.
         apart: Keys that cannot be given with it.
     """
     text = f"{meaning} [{unit}]" if unit else meaning
-    extra: Any = {"beside": list(beside), "apart": list(apart)}
+    extra: Any = {"beside": beside.split(), "apart": apart.split()}
     return Field(default, description=text, json_schema_extra=extra)
 
 

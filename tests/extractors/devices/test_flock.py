@@ -1,12 +1,8 @@
 """The Flock of Birds driver reads what its simulator sends, on clean, bad and broken lines."""
 
-import time
-
 import numpy as np
 import pytest
 import tracked
-from hypothesis import given
-from hypothesis import strategies as st
 
 from capar.model.errors import DeviceError
 from extractors.devices.bird_formats import FORMATS
@@ -83,35 +79,6 @@ def test_with_bytes_lost_nothing_wrong_is_accepted_and_nine_tenths_of_the_good_a
     assert flock.counts.lost_records >= 0.5 * damaged
 
 
-class HeldUp(FlockSimulator):
-    """A simulator whose computer stands still once, when it is told to."""
-
-    pause_s = 0.0
-
-    def _attend(self, ready: set[int]) -> None:
-        pause_s, self.pause_s = self.pause_s, 0.0
-        time.sleep(pause_s)
-        super()._attend(ready)
-
-
-def test_a_simulator_that_is_held_up_goes_on_where_it_was_and_floods_no_port() -> None:
-    log: list[Sent] = []
-    birds, rate_hz, pause_s = 12, 60.0, 0.8
-    rig, options = FlockRig(quiet_s=QUIET_S), f"birds={birds}&format=pos_quat&rate={rate_hz}"
-    with (
-        HeldUp(SmoothMotion(birds), rig, log=log) as simulator,
-        tracker(simulator, options) as flock,
-    ):
-        tracked.take(flock, 10)
-        before = len(log)
-        simulator.pause_s, start_s = pause_s, time.monotonic()
-        frames = tracked.collect(flock, pause_s + 0.5)
-        ran_s = time.monotonic() - start_s - pause_s
-    assert flock.counts.lost_records == 0
-    assert len(frames) > 0.3 * rate_hz
-    assert len(log) - before < 1.5 * birds * rate_hz * (ran_s + 0.2)
-
-
 def test_a_bird_with_a_line_of_its_own_is_read_beside_the_others() -> None:
     log: list[Sent] = []
     rig = FlockRig(line_a_bird=True, quiet_s=QUIET_S)
@@ -163,21 +130,6 @@ def test_a_pulled_plug_is_survived_and_told(mode: str) -> None:
         assert each.wrong == 0
 
 
-def test_slow_answers_to_polls_lower_the_rate_and_lose_nothing() -> None:
-    log: list[Sent] = []
-    faults = Faults(reply_delay_s=0.1)
-    with (
-        FlockSimulator(SmoothMotion(3), FlockRig(quiet_s=QUIET_S), faults, log) as simulator,
-        tracker(simulator, "birds=3&rate=60&mode=point") as flock,
-    ):
-        start = time.monotonic()
-        frames = tracked.take(flock, 5)
-    assert time.monotonic() - start >= 5 * 0.1
-    assert flock.counts.lost_records == 0
-    for each in tracked.held_by_flock(frames, log, "pos_quat", group=True, range_inch=36.0):
-        assert each.wrong == 0
-
-
 def test_with_the_true_pauses_the_flock_is_configured_and_without_them_it_is_not() -> None:
     with FlockSimulator(SmoothMotion(2)) as simulator:
         with FlockTracker(parse_address(f"flock:{simulator.place}?birds=2&rate=60")) as flock:
@@ -203,29 +155,9 @@ def test_an_error_of_the_device_is_told_in_words() -> None:
         tracker(simulator, "birds=1").open()
 
 
-def test_a_unit_that_does_not_answer_is_an_error_with_its_remedy() -> None:
-    rig = FlockRig(quiet_s=QUIET_S)
-    with (
-        FlockSimulator(SmoothMotion(1), rig, Faults(lost_share=1.0)) as simulator,
-        pytest.raises(DeviceError, match=r"no answer .* check the power"),
-    ):
-        tracker(simulator, "birds=1").open()
-
-
 def test_a_rate_that_the_line_cannot_carry_is_refused_with_the_arithmetic() -> None:
     with pytest.raises(DeviceError, match=r"12 x 15 bytes .* 18594 bytes a second, .* 64 Hz"):
         FlockTracker(parse_address("flock:/dev/x?birds=12&rate=103.3"))
-
-
-@given(form=st.sampled_from(sorted(FORMATS)), birds=st.integers(1, 13), erc=st.booleans())
-def test_exactly_the_rates_that_fit_are_taken(form: str, birds: int, erc: bool) -> None:
-    group = birds + erc > 1
-    limit_hz = min(MOST_HZ, FlockLayout(FORMATS[form], group).limit_hz(birds, 115200))
-    text = f"flock:/dev/x?birds={birds}&erc={'yes' if erc else 'no'}&format={form}&rate="
-    taken = FlockTracker(parse_address(f"{text}{limit_hz * 0.999}"))
-    assert taken.describe().rate_hz < limit_hz
-    with pytest.raises(DeviceError):
-        FlockTracker(parse_address(f"{text}{limit_hz * 1.001}"))
 
 
 @pytest.mark.parametrize(

@@ -60,18 +60,6 @@ def test_every_frame_arrives_with_its_time() -> None:
     np.testing.assert_allclose(steps, 0.01, atol=1e-3)
 
 
-def test_a_lost_sensor_stays_lost_and_is_counted() -> None:
-    made = frames(10, 50.0)
-    for each in made:
-        each.positions[1] = np.nan
-        each.orientations[1] = np.nan
-    tracker, got = sent("capar_test_lost", made)
-    assert len(got) == 10
-    assert all(np.isnan(each.positions[1]).all() for each in got)
-    assert not any(np.isnan(each.positions[[0, 2]]).any() for each in got)
-    assert tracker.counts.lost_records == 10
-
-
 def test_a_stream_that_nobody_sends_is_an_error_with_its_remedy() -> None:
     with pytest.raises(DeviceError, match=r"no stream of that name within 0.5 s"):
         LslTracker(parse_address("lsl:capar_test_nobody?timeout=0.5")).open()

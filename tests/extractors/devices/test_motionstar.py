@@ -90,17 +90,3 @@ def test_a_server_with_other_birds_is_refused_with_those_it_has() -> None:
         pytest.raises(DeviceError, match=r"has 2 birds, at \[2, 3\]; birds=12"),
     ):
         tracker(simulator, "rate=100").open()
-
-
-def test_an_error_of_the_server_is_told_in_words() -> None:
-    with (
-        MotionStarSimulator(SmoothMotion(1), Faults(error=30)) as simulator,
-        pytest.raises(DeviceError, match=r"extended-range transmitter is not attached"),
-    ):
-        tracker(simulator, "birds=1").open()
-
-
-@pytest.mark.parametrize("place", ["host:", "host:port", ":6000", "host:70000"])
-def test_a_place_that_is_no_host_is_refused(place: str) -> None:
-    with pytest.raises(DeviceError, match=r"no HOST or HOST:PORT"):
-        MotionStarTracker(parse_address(f"motionstar:{place}"))

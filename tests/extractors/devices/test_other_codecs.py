@@ -45,13 +45,6 @@ def test_a_header_is_laid_out_as_the_protocol_says() -> None:
     assert packet.encode().hex(" ") == "01 02 02 03 01 02 03 04 d2 07 03 05 06 07 00 02 61 62"
 
 
-@pytest.mark.parametrize("word", range(-0x8000, 0x8000, 0x1000))
-def test_data_words_keep_all_their_bits(word: int) -> None:
-    for value in range(word, word + 0x1000):
-        body = birdnet.encode_data({3: (FORMATS["pos"], (value, 0, -1))})
-        assert birdnet.decode_data(body) == {3: (FORMATS["pos"], (value, 0, -1))}
-
-
 @given(st.dictionaries(st.integers(1, 126), FORMS, max_size=12), st.data())
 def test_the_birds_of_a_data_packet_are_decoded(forms: dict[int, str], data: st.DataObject) -> None:
     birds = {
@@ -61,20 +54,10 @@ def test_the_birds_of_a_data_packet_are_decoded(forms: dict[int, str], data: st.
     assert birdnet.decode_data(birdnet.encode_data(birds)) == birds
 
 
-def test_twelve_birds_of_position_and_quaternion_are_208_bytes() -> None:
-    form = FORMATS["pos_quat"]
-    body = birdnet.encode_data(dict.fromkeys(range(2, 14), (form, (0,) * 7)))
-    assert len(body) + birdnet.HEADER.size == 208
-
-
 @given(rate=st.integers(1, 999_999), units=st.binary(max_size=14))
 def test_a_system_status_is_decoded_as_it_was_encoded(rate: int, units: bytes) -> None:
     status = birdnet.SystemStatus(rate / 1000.0, tuple(units))
     assert birdnet.decode_system_status(status.encode()) == status
-
-
-def test_the_rate_is_six_digits() -> None:
-    assert b"103300" in birdnet.SystemStatus(103.3, (0xE0,)).encode()
 
 
 @given(FORMS, st.integers(1, 0x0FFF), BYTE, st.binary(min_size=70, max_size=70))
@@ -172,20 +155,6 @@ def test_vrpn_messages_come_out_however_their_bytes_are_cut(
 @given(st.text(max_size=40).filter(lambda text: "\0" not in text))
 def test_a_vrpn_name_is_decoded_as_it_was_encoded(name: str) -> None:
     assert vrpn.decode_name(vrpn.encode_name(name)) == name
-
-
-@given(INT, st.tuples(*[st.floats(allow_nan=False)] * 7))
-def test_a_vrpn_pose_is_decoded_as_it_was_encoded(sensor: int, values: tuple[float, ...]) -> None:
-    payload = vrpn.encode_pose(sensor, values[:3], values[3:])
-    assert len(payload) == 64
-    assert vrpn.decode_pose(payload) == (sensor, values[:3], values[3:])
-
-
-def test_a_server_of_another_kind_is_told_by_its_first_bytes() -> None:
-    vrpn.check_cookie(vrpn.COOKIE)
-    assert len(vrpn.COOKIE) == 24
-    with pytest.raises(DeviceLostError, match=r"no VRPN 7 server"):
-        vrpn.check_cookie(b"HTTP/1.1 400 Bad Request")
 
 
 @given(st.lists(st.binary(max_size=100), max_size=10))

@@ -104,14 +104,6 @@ def test_a_kill_at_any_moment_loses_no_frame_older_than_a_fifth_of_a_second() ->
     assert all(held > 0 for _, held in done)
 
 
-def test_what_is_no_recording_is_told(tmp_path: Path) -> None:
-    (tmp_path / "a.csv").write_text("t_s,x\n")
-    with pytest.raises(FileError, match="no recording of a live tracker"):
-        read_live_recording(tmp_path / "a.csv")
-    with pytest.raises(FileError, match="cannot be read"):
-        read_live_recording(tmp_path / "b.live")
-
-
 @pytest.mark.parametrize(("device", "cycles"), [(True, False), (False, True)])
 def test_the_times_of_a_bundle_are_free_of_the_delays_on_the_way(
     device: bool, cycles: bool, tmp_path: Path

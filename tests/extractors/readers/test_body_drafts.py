@@ -14,7 +14,6 @@ from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.drafting.draft import EDIT, draft
-from extractors.readers.names import body_names
 from extractors.readers.registry import read_recording
 
 DATA = Path(os.environ.get("CAPAR_DATA", Path(__file__).parents[4] / "shared" / "data"))
@@ -132,18 +131,6 @@ def test_a_unit_that_makes_no_person_is_doubted(tmp_path: Path) -> None:
     (line,) = [each for each in text.splitlines() if EDIT in each]
     assert "the person is 0.17" in line
     assert "cm would make it 1.7" in line
-
-
-@pytest.mark.parametrize(
-    "name, place",
-    [
-        ("R.Thigh.Upper", "right_thigh"), ("RightHandThumb1", "right_thumb"),
-        ("LThumb", "left_thumb"), ("medial_malleolus_l", "left_ankle_medial"),
-        ("GloveR2", "right_hand"), ("r_radius_styloid", "right_wrist_radial"),
-    ],
-)  # fmt: skip
-def test_words_tell_the_place_of_markers_of_no_convention(name: str, place: str) -> None:
-    assert body_names([name])[name].place == place
 
 
 @recorded

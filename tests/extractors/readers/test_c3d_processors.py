@@ -6,24 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from extractors.readers.formats.c3d import reals
 from extractors.readers.registry import read_recording
 
 PLACES_MM = np.array([[[1.0, -2.5, 900.0]], [[1.5, -2.0, 901.0]], [[2.5, 1e-3, 902.5]]])
 RATE_HZ = 100.0
 PC, DEC, SGI = 84, 85, 86
-
-DEC_REALS = {
-    1.0: 0x00004080,
-    -1.0: 0x0000C080,
-    3.5: 0x00004160,
-    -3.5: 0x0000C160,
-    3.14159: 0x0FD04149,
-    1e37: 0xBDC27DF0,
-    1e-37: 0x1CEA0308,
-    1.23456789: 0x0652409E,
-}
-"""Numbers and their F_floating longwords, as libvaxdata of the USGS lists them."""
 
 
 def written(values: np.ndarray, processor: int) -> bytes:
@@ -64,8 +51,3 @@ def test_points_and_times_are_those_that_were_written(processor: int, tmp_path: 
     assert np.allclose(recording.times, np.arange(len(PLACES_MM)) / RATE_HZ)
     found = recording.markers["hand"] * 1e3 * float(recording.unit_m or 1.0)
     assert np.allclose(found, PLACES_MM[:, 0], rtol=1e-6)
-
-
-def test_numbers_of_a_vax_are_those_that_are_published() -> None:
-    stored = struct.pack(f"<{len(DEC_REALS)}I", *DEC_REALS.values())
-    assert np.allclose(reals(stored, "<", vax=True), list(DEC_REALS), rtol=1e-6, atol=0.0)

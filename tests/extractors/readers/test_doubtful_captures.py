@@ -34,10 +34,6 @@ def notices(folder: Path, text: str = TRIAL, *, closed: bool = True) -> dict[str
     return {each.code: each.message for each in read_capture(folder).notices}
 
 
-def test_a_capture_without_doubts_has_no_notice(tmp_path: Path) -> None:
-    assert notices(tmp_path) == {}
-
-
 def test_a_mesh_with_a_hole_is_told_with_its_body_and_its_open_edges(tmp_path: Path) -> None:
     said = notices(tmp_path, closed=False)
     message = "right_hand: the mesh hand.stl is not closed, it has 4 open edges"

@@ -4,12 +4,10 @@ from pathlib import Path
 
 import motion_files as samples
 import numpy as np
-import pytest
 
 from capar.model.capture import Source
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.drafting.draft import draft
-from extractors.readers.names import part_of
 from extractors.readers.recording import Recording, track
 
 PALM = """name = "trial"
@@ -66,13 +64,6 @@ def test_a_palm_and_a_finger_are_one_hand_that_is_called_so(tmp_path: Path) -> N
     assert told.bodies == ("right_hand",)
 
 
-def test_a_hand_whose_name_says_nothing_is_the_hand_beside_its_fingers(tmp_path: Path) -> None:
-    text = PALM.replace("right_palm", "tracker_b") + INDEX
-    capture = read_capture(bundle(tmp_path, text))
-    (hand,) = capture.acting
-    assert [each.name for each in capture.parts_of(hand.name)] == [hand.name, "right_index"]
-
-
 def test_a_distance_stated_for_the_palm_is_the_hands(tmp_path: Path) -> None:
     capture = read_capture(bundle(tmp_path, PALM + INDEX + PIVOT))
     assert [(each.first, each.second) for each in capture.pivot_contacts] == [("right_hand", "mug")]
@@ -83,27 +74,6 @@ def test_parts_are_told_apart_on_demand(tmp_path: Path) -> None:
     capture = read_capture(bundle(tmp_path, text))
     assert [each.name for each in capture.acting] == ["right_palm", "right_index"]
     assert not any(each.code == "sensors-grouped" for each in capture.notices)
-
-
-@pytest.mark.parametrize(
-    ("name", "limb"),
-    [
-        ("R_Index1", "hand"), ("left_heel", "foot"), ("RightToeBase", "foot"), ("palm", "hand"),
-        ("L_Thumb3", "hand"), ("right_knee", ""), ("springboard", ""), ("handle", ""),
-    ],
-)  # fmt: skip
-def test_a_part_is_known_by_a_whole_word_of_its_name(name: str, limb: str) -> None:
-    found = part_of(name)
-    assert (found[0] if found else "") == limb
-
-
-def test_a_palm_stands_before_fingers_and_a_heel_before_toes() -> None:
-    hands = [part_of(name) for name in ("hand", "wrist", "palm", "thumb", "pinky")]
-    feet = [part_of(name) for name in ("foot", "ankle", "heel", "toe")]
-    for found in (hands, feet):
-        ranks = [each[1] for each in found if each]
-        assert ranks == sorted(set(ranks))
-        assert len(ranks) == len(found)
 
 
 def test_a_draft_takes_heels_toes_and_fingers_for_sensors_and_says_what_it_does_with_them() -> None:

@@ -52,15 +52,6 @@ def test_markers_on_a_rigid_body_give_its_motion_back_though_some_are_hidden(see
     )
 
 
-def test_two_markers_or_three_on_a_line_make_no_body() -> None:
-    steps = np.linspace(0, 1, 5)[:, None] * np.ones(3)
-    line = {name: steps + np.array([n, 0.0, 0.0]) for n, name in enumerate("abc")}
-    with pytest.raises(CaptureError, match="one line"):
-        arrangement("stick", line)
-    with pytest.raises(CaptureError, match="needs three"):
-        arrangement("pair", {name: line[name] for name in "ab"})
-
-
 @settings(max_examples=25, deadline=None)
 @given(seed=SEEDS, rate=st.floats(40.0, 300.0))
 def test_resampling_keeps_smooth_motion_and_never_crosses_a_gap(seed: int, rate: float) -> None:

@@ -39,30 +39,6 @@ def bundle(folder: Path, text: str = TRIAL) -> Path:
     return folder
 
 
-WRONG = (
-    ('name = "trial"', 'name = ""', "name is empty."),
-    ('name = "trial"', 'name = "  "', "name is empty."),
-    ('name = "ann"', 'name = ""', "name is empty."),
-    ('kind = "cup"', 'kind = ""', "kind is empty."),
-    ('name = "right_hand"', 'name = "Right Hand!"', "name 'Right Hand!': names begin"),
-    ('name = "right_hand"', 'name = ""', "name '': names begin"),
-    ('name = "table"', 'name = "mug" #', "two objects are called 'mug'; also "),
-    ("rate_hz = 100", "rate_hz = -5", "rate_hz = -5; it must be greater than 0."),
-    ("rate_hz = 100", "rate_hz = 0", "rate_hz = 0; it must be greater than 0."),
-)
-
-
-@pytest.mark.parametrize(("right", "wrong", "told"), WRONG)
-def test_what_is_wrong_with_a_name_or_rate_is_told_with_its_line(
-    right: str, wrong: str, told: str, tmp_path: Path
-) -> None:
-    text = TRIAL.replace(right, wrong)
-    line = next(n for n, each in enumerate(text.splitlines(), 1) if each == wrong)
-    with pytest.raises(FileError) as caught:
-        read_capture(bundle(tmp_path, text))
-    assert f"capture.toml:{line}: {told}" in str(caught.value)
-
-
 @pytest.mark.parametrize("place", [".", "capture.toml", "../pour", "../pour/capture.toml"])
 def test_a_capture_without_a_name_is_called_after_its_folder_from_wherever(
     place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

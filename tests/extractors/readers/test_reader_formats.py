@@ -10,7 +10,7 @@ import pytest
 
 from capar.model import geometry
 from capar.model.errors import CaparError, FileError
-from extractors.readers.registry import READERS, read_recording
+from extractors.readers.registry import read_recording
 
 KINDS = sorted(samples.WRITERS)
 
@@ -72,22 +72,6 @@ def test_a_ros2_bag_is_read_from_its_folder(tmp_path: Path) -> None:
     path = samples.write_bag2(tmp_path / "bag2")
     body = read_recording(path).bodies["hand"]
     assert np.allclose(body.positions, samples.PLACES)
-
-
-def test_an_unknown_file_is_told_which_formats_are_read(tmp_path: Path) -> None:
-    path = tmp_path / "poem.txt"
-    path.write_text("Tyger Tyger, burning bright,\nIn the forests of the night;\n")
-    with pytest.raises(FileError) as caught:
-        read_recording(path)
-    for reader in READERS:
-        assert reader.description in str(caught.value)
-
-
-@pytest.mark.parametrize("place", ["missing.csv", "", "empty.csv"])
-def test_a_path_without_a_file_of_motion_is_refused(place: str, tmp_path: Path) -> None:
-    (tmp_path / "empty.csv").touch()
-    with pytest.raises(FileError):
-        read_recording(tmp_path / place)
 
 
 def test_missing_points_are_lost_frames(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from capar.cli import app
-from capar.model.capture import Source, recorded_at
+from capar.model.capture import recorded_at
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.recording import iso_of_stamp, iso_time
 from extractors.readers.registry import read_recording
@@ -61,14 +61,6 @@ def test_a_bag_is_as_old_as_its_first_stamp_if_that_is_a_date(tmp_path: Path) ->
     dated = samples.write_bag(tmp_path / "dated.bag", since_s=1_580_702_706)
     assert read_recording(uptime).source.recorded_at == ""
     assert read_recording(dated).source.recorded_at == "2020-02-03T04:05:06Z"
-
-
-def test_what_a_capture_toml_states_goes_before_its_files_and_else_the_earliest_counts() -> None:
-    own = Source("capture.toml", "capture.toml", "0", "2020-01-01")
-    late, early = (Source(day, "qualisys", day, f"2021-08-{day}") for day in ("27", "26"))
-    assert recorded_at([own, late, early]) == "2020-01-01"
-    assert recorded_at([late, early]) == "2021-08-26"
-    assert recorded_at([Source("a", "bvh", "0")]) == ""
 
 
 def bundle(folder: Path, line: str) -> Path:

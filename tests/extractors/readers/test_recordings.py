@@ -98,9 +98,3 @@ def test_the_mirrored_groceries_stand_on_the_table_and_end_in_the_box() -> None:
     for name in ("bleach", "mug", "apple", "banana"):
         assert lowest(capture, name, 0) == pytest.approx(0.70, abs=0.005)
         assert 0.715 < lowest(capture, name, len(capture.times) - 1) < 0.85
-
-
-def test_a_reach_into_the_air_is_read_in_metres() -> None:
-    capture = example("smartbody_mocap_reaching:ReachForwardLow01")
-    wrist = capture.sensor("right_hand").stream.positions
-    assert wrist[0, 2] == pytest.approx(0.88, abs=0.05)

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -28,16 +27,6 @@ def test_rounding_to_milliseconds_is_taken_back(rate_hz: float, frames: int, fir
     times = unrounded(np.round(true, 3), rate_hz)
     assert np.allclose(np.diff(times), 1.0 / rate_hz, atol=1e-9)
     assert np.abs(times - true).max() < 0.0012
-
-
-def test_a_wrong_stated_rate_does_not_hide_the_clock() -> None:
-    times = unrounded(np.round(_clock(60.0, 200, 0), 3), 250.0)
-    assert 1.0 / np.median(np.diff(times)) == pytest.approx(60.0, rel=1e-4)
-
-
-def test_a_clock_with_a_gap_stays_as_it_is() -> None:
-    times = np.delete(_clock(60.0, 100, 0), slice(40, 50))
-    assert unrounded(times, 60.0) is times
 
 
 def test_a_trc_of_60_hz_is_read_as_60_hz(tmp_path: Path) -> None:
