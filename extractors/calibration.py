@@ -1,6 +1,6 @@
 """Calibration: everything that is decided once for a whole recording, and how a user sets it."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, replace
 from typing import Any
 
@@ -52,7 +52,17 @@ def calibrated(capture: Capture, thresholds: Thresholds) -> tuple[Calibration, B
         objects=tuple(_body(capture, each, bodies.objects, thresholds) for each in capture.objects),
         pairs=pairs,
         foot_levels=tuple(_foot_levels(capture, bodies, thresholds)),
-        horizons=_horizons(step_s, thresholds),
+        horizons=Horizons(
+            filter_s=filter_support_s(step_s, thresholds),
+            gap_s=thresholds.gap_s,
+            extremum_s=thresholds.extremum_horizon_s,
+            interval_s=max(
+                thresholds.dropout_s,
+                thresholds.contact_minimum_s,
+                thresholds.rest_minimum_s,
+                thresholds.fall_minimum_s,
+            ),
+        ),
         thresholds=asdict(thresholds),
         moving_grounds=tuple(moving_grounds(capture, bodies, touch_m, thresholds)),
     )
@@ -94,6 +104,13 @@ def _body(
         own_m=own_m if isinstance(each, TagObject) else None,
         thresholds=thresholds,
     )
+    # Where it first rests; fixed bodies are not asked for theirs.
+    first = None
+    if not isinstance(each, TagObject) or each.tag is TagType.MOBILE:
+        rate_hz = frame_rate(poses.smooth.times)
+        at = motion_floor(poses.noise, rate_hz, own_m=own_m, thresholds=thresholds)
+        first = next(iter(rest_poses(poses, at, thresholds)), None)
+    x, y, z = map(float, upright_axis(poses, first))
     speeds = speed(poses.smooth.positions, capture.times)
     return BodyCalibration(
         name=each.name,
@@ -102,23 +119,10 @@ def _body(
         motion_floor_m=floor.position_m,
         motion_floor_rad=floor.rotation_rad,
         highest_speed_mps=float(np.max(speeds, where=~np.isnan(speeds), initial=0.0)),
-        upright=_upright(each, bodies[each.name], own_m, thresholds),
+        upright=(x, y, z),
         still=poses.still,
         fixed=poses.fixed,
     )
-
-
-def _upright(
-    each: Sensor | TagObject, body: BodyGeometry, own_m: float | None, thresholds: Thresholds
-) -> tuple[float, float, float]:
-    """The axis that points up where a body first rests; fixed bodies are not asked for theirs."""
-    first = None
-    if not (isinstance(each, TagObject) and each.tag is not TagType.MOBILE):
-        rate_hz = frame_rate(body.poses.smooth.times)
-        floor = motion_floor(body.poses.noise, rate_hz, own_m=own_m, thresholds=thresholds)
-        first = next(iter(rest_poses(body.poses, floor, thresholds)), None)
-    x, y, z = map(float, upright_axis(body.poses, first))
-    return x, y, z
 
 
 def _foot_levels(capture: Capture, bodies: Bodies, thresholds: Thresholds) -> Iterator[FootLevel]:
@@ -135,19 +139,11 @@ def _foot_levels(capture: Capture, bodies: Bodies, thresholds: Thresholds) -> It
             yield FootLevel(agent.name, height_m)
 
 
-def _horizons(step_s: float, thresholds: Thresholds) -> Horizons:
-    return Horizons(
-        filter_s=filter_support_s(step_s, thresholds),
-        gap_s=thresholds.gap_s,
-        extremum_s=thresholds.extremum_horizon_s,
-        interval_s=max(
-            thresholds.dropout_s,
-            thresholds.contact_minimum_s,
-            thresholds.rest_minimum_s,
-            thresholds.fall_minimum_s,
-        ),
-    )
+WHOLE = ("contact_tolerance_m", "contact_dropout_s", "contact_minimum_s")
+"""Keys of the whole capture, which name no body."""
 
+KEYS = ("touch_m", *WHOLE, "motion_floor_m", "motion_floor_rad")
+"""What can be set: of the whole, of a ``:BODY``, or of a pair ``:FIRST,SECOND``."""
 
 FORM = "--set takes KEY=VALUE, such as touch_m:right_hand,bowl=0.12"
 
@@ -171,82 +167,54 @@ def set_values(calibration: Calibration, settings: Iterable[str]) -> Calibration
             raise UnknownNameError("calibration value", name, KEYS, where=f"--set {setting}")
         if of and name in WHOLE:
             raise CaparError(f"--set {setting}: {name} is of the whole capture, not of {of!r}")
-        calibration = KEYS[name](calibration, of.strip(), _number(setting, text))
+        try:
+            value = float(text)
+        except ValueError:
+            raise CaparError(f"--set {setting}: {text!r} is no number; {FORM}") from None
+        if not 0.0 < value < float("inf"):
+            raise CaparError(f"--set {setting}: expected a number above zero, found {text}")
+        calibration = _changed(calibration, name, of.strip(), value)
     return calibration
 
 
-def _number(setting: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        raise CaparError(f"--set {setting}: {text!r} is no number; {FORM}") from None
-    if not 0.0 < value < float("inf"):
-        raise CaparError(f"--set {setting}: expected a number above zero, found {text}")
-    return value
-
-
-def _tolerance(known: Calibration, of: str, value: float) -> Calibration:
-    def wider(pair: PairCalibration) -> PairCalibration:
-        if pair.found is not Found.TOLERANCE:
-            return pair
-        margin = min(pair.release_m - pair.touch_m, value)
-        return replace(pair, touch_m=value, release_m=value + margin)
-
-    pairs = tuple(map(wider, known.pairs))
-    return replace(known, contact_tolerance_m=value, pairs=pairs)
-
-
-def _touch(known: Calibration, of: str, value: float) -> Calibration:
-    """A distance for a pair, in either order."""
-    names = {name.strip() for name in of.split(",")}
-    if not any({pair.first, pair.second} == names for pair in known.pairs):
-        pairs = [f"{pair.first},{pair.second}" for pair in known.pairs]
-        raise UnknownNameError("pair", of, pairs, where="--set touch_m")
-
-    def stated(pair: PairCalibration) -> PairCalibration:
-        if {pair.first, pair.second} != names:
-            return pair
-        pivots = pair.pivots or pair.found is Found.NEVER
-        return PairCalibration(
-            pair.first, pair.second, value, value, pivots=pivots, found=Found.STATED
+def _changed(known: Calibration, key: str, of: str, value: float) -> Calibration:
+    """The same with one value replaced; a distance for a pair in either order."""
+    change: dict[str, Any] = {key: value}
+    if key == "touch_m":
+        names = {name.strip() for name in of.split(",")}
+        if not any({pair.first, pair.second} == names for pair in known.pairs):
+            every = [f"{pair.first},{pair.second}" for pair in known.pairs]
+            raise UnknownNameError("pair", of, every, where="--set touch_m")
+        pairs = [
+            PairCalibration(
+                pair.first,
+                pair.second,
+                value,
+                value,
+                pivots=pair.pivots or pair.found is Found.NEVER,
+                found=Found.STATED,
+            )
+            if {pair.first, pair.second} == names
+            else pair
+            for pair in known.pairs
+        ]
+        return replace(known, pairs=tuple(pairs))
+    if key not in WHOLE:
+        bodies = [each.name for each in (*known.sensors, *known.objects)]
+        if of not in bodies:
+            raise UnknownNameError("body", of, bodies, where=f"--set {key}")
+        sensors, objects = (
+            tuple(replace(each, **change) if each.name == of else each for each in group)
+            for group in (known.sensors, known.objects)
         )
-
-    return replace(known, pairs=tuple(map(stated, known.pairs)))
-
-
-def _floor(field: str) -> "Callable[[Calibration, str, float], Calibration]":
-    def changed(known: Calibration, of: str, value: float) -> Calibration:
-        bodies = (*known.sensors, *known.objects)
-        if of not in [each.name for each in bodies]:
-            names = [each.name for each in bodies]
-            raise UnknownNameError("body", of, names, where=f"--set {field}")
-
-        def one(each: BodyCalibration) -> BodyCalibration:
-            return replace(each, **_field(field, value)) if each.name == of else each
-
-        sensors, objects = tuple(map(one, known.sensors)), tuple(map(one, known.objects))
         return replace(known, sensors=sensors, objects=objects)
-
-    return changed
-
-
-def _whole(field: str) -> "Callable[[Calibration, str, float], Calibration]":
-    return lambda known, of, value: replace(known, **_field(field, value))
-
-
-def _field(name: str, value: float) -> dict[str, Any]:
-    return {name: value}
-
-
-KEYS: "dict[str, Callable[[Calibration, str, float], Calibration]]" = {
-    "touch_m": _touch,
-    "contact_tolerance_m": _tolerance,
-    "contact_dropout_s": _whole("contact_dropout_s"),
-    "contact_minimum_s": _whole("contact_minimum_s"),
-    "motion_floor_m": _floor("motion_floor_m"),
-    "motion_floor_rad": _floor("motion_floor_rad"),
-}
-"""What can be set, by key: of the whole, of a ``:BODY``, or of a pair ``:FIRST,SECOND``."""
-
-WHOLE = ("contact_tolerance_m", "contact_dropout_s", "contact_minimum_s")
-"""Keys of the whole capture, which name no body."""
+    if key == "contact_tolerance_m":
+        change["pairs"] = tuple(
+            replace(
+                pair, touch_m=value, release_m=value + min(pair.release_m - pair.touch_m, value)
+            )
+            if pair.found is Found.TOLERANCE
+            else pair
+            for pair in known.pairs
+        )
+    return replace(known, **change)

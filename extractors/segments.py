@@ -1,7 +1,6 @@
 """What is measured of a segment after naming: locations, kinds of motion, styles and tracks."""
 
 from collections.abc import Iterator, Mapping
-from typing import TypeAlias
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -30,8 +29,6 @@ from extractors.motion.object_motion import motion_floor
 from extractors.relations.attention import NOTHING, Attention
 from extractors.signals.intervals import frame_rate
 from extractors.thresholds import Thresholds
-
-_Point: TypeAlias = Vector
 
 
 def constraint_location(
@@ -101,20 +98,16 @@ def _relative(base: BodyGeometry, other: BodyGeometry, frame: int) -> Quaternion
     )
 
 
-def _points(moved: BodyGeometry, target: BodyGeometry, frame: int) -> tuple[_Point, _Point]:
+def _points(moved: BodyGeometry, target: BodyGeometry, frame: int) -> tuple[Vector, Vector]:
     """The contact's place in the frame of what comes and in the target's [m]."""
     if moved.shape is None or target.shape is None:
-        return np.zeros(3), _local(target, moved.poses.settled.positions[frame], frame)
+        place = moved.poses.settled.positions[frame]
+        at = target.poses.settled
+        return np.zeros(3), local_point(at.positions[frame], at.orientations[frame], place)
     one = at_frame(surface(moved.shape), moved.poses.settled, frame)
     two = at_frame(surface(target.shape), target.poses.settled, frame)
     _, on_moved, on_target = nearest(one, two, 0)
     return on_moved, on_target
-
-
-def _local(base: BodyGeometry, point: _Point, frame: int) -> _Point:
-    """A point of the world [m] in a body's frame."""
-    stream = base.poses.settled
-    return local_point(stream.positions[frame], stream.orientations[frame], point)
 
 
 def _seen(
@@ -127,7 +120,9 @@ def _seen(
             name = look.objects[look.seen[frame]]
             body = bodies.objects[name]
             turn = _relative(body, bodies.sensors[sensor], frame)
-            point = _local(body, look.points[frame], frame)
+            at = body.poses.settled
+            place, own = at.positions[frame], at.orientations[frame]
+            point = local_point(place, own, look.points[frame])
             return name, normalised(point, turn, size(capture.tag_object(name)))
     return "", None
 
@@ -155,7 +150,7 @@ def moved_path(
     else:
         positions = measurements.tracks[name].positions
     ends = (positions[segment.first], positions[segment.last])
-    return kind, tuple(_place(each) for each in ends if not np.isnan(each).any())
+    return kind, tuple(_point(each) for each in ends if not np.isnan(each).any())
 
 
 def followed(segment: Segment) -> tuple[bool, str]:
@@ -166,11 +161,6 @@ def followed(segment: Segment) -> tuple[bool, str]:
     if "1" in segment.features.change_loc:
         return True, segment.objects[segment.features.change_loc.index("1")]
     return False, segment.ee
-
-
-def _place(position: Vector) -> Place:
-    x, y, z = map(float, position)
-    return x, y, z
 
 
 def motion_kind(
@@ -298,6 +288,6 @@ def path_style(
     )
 
 
-def _point(position: Vector) -> tuple[float, float, float]:
+def _point(position: Vector) -> Place:
     x, y, z = map(float, position)
     return x, y, z

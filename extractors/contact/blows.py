@@ -1,6 +1,6 @@
 """Blows and arrivals: how fast bodies meet and part."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -38,60 +38,46 @@ def blows(
         thing = bodies.objects[name]
         for frame in set_going(thing, spans, thresholds):
             around = _around(thing, frame, thresholds)
-            held = _held(touches, acting, around, set(motions) - {name})
-            if _touched(touches, name, {*acting, *held}, around):
+            # What may strike besides end-effectors moves and is touched all that time.
+            held = {
+                each.second
+                for each in touches
+                if each.first in acting
+                and each.second not in acting
+                and each.second in set(motions) - {name}
+                and each.interval[0] <= around[0]
+                and around[1] <= each.interval[1]
+            }
+            strikers = {*acting, *held}
+            if any(
+                name in (each.first, each.second)
+                and (each.first in strikers or each.second in strikers)
+                and each.interval[0] <= around[1]
+                and around[0] <= each.interval[1]
+                for each in touches
+            ):
                 continue
-            for other in acting:
-                if other != name:
-                    yield from _blow_of_any(other, name, frame, bodies, calibration, thresholds)
-            for first, second in ((min(each, name), max(each, name)) for each in held):
-                pair, one = calibration.pair(first, second), bodies.objects[first]
-                if not pair.pivots:
-                    met = blow(one, bodies.objects[second], frame, pair.touch_m, thresholds)
-                    if met is not None:
-                        yield Contact(first, second, met, 0.0)
-
-
-def _blow_of_any(
-    ee: str, name: str, frame: int, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
-) -> Iterator[Contact]:
-    """The contact of an end-effector, or of any part of it, with a thing that is set going."""
-    for part in bodies.on_end_effector(ee):
-        if part.shape is None or (pair := calibration.pair(part.name, name)).pivots:
-            continue
-        met = blow(part, bodies.objects[name], frame, pair.touch_m, thresholds)
-        if met is not None:
-            yield Contact(ee, name, met, 0.0)
-            return
-
-
-def _held(
-    known: Iterable[Contact], acting: Collection[str], around: Interval, moving: Collection[str]
-) -> tuple[str, ...]:
-    """What may strike beside end-effectors: things that move and are touched all that time."""
-    found = {
-        each.second
-        for each in known
-        if each.first in acting
-        and each.second not in acting
-        and each.second in moving
-        and each.interval[0] <= around[0]
-        and around[1] <= each.interval[1]
-    }
-    return tuple(sorted(found))
-
-
-def _touched(
-    known: Iterable[Contact], name: str, strikers: Collection[str], around: Interval
-) -> bool:
-    """Whether one of the strikers is known to touch the thing about then."""
-    return any(
-        name in (each.first, each.second)
-        and (each.first in strikers or each.second in strikers)
-        and each.interval[0] <= around[1]
-        and around[0] <= each.interval[1]
-        for each in known
-    )
+            pairs = [
+                (part, thing, part.name, name, other, name)
+                for other in acting
+                if other != name
+                for part in bodies.on_end_effector(other)
+                if part.shape is not None
+            ]
+            for each in sorted(held):
+                first, second = min(each, name), max(each, name)
+                pairs.append(
+                    (bodies.objects[first], bodies.objects[second], first, second, first, second)
+                )
+            found: set[tuple[str, str]] = set()
+            for one, two, first, second, whole, other in pairs:
+                pair = calibration.pair(first, second)
+                if (whole, other) in found or pair.pivots:
+                    continue
+                met = blow(one, two, frame, pair.touch_m, thresholds)
+                if met is not None:
+                    found.add((whole, other))
+                    yield Contact(whole, other, met, 0.0)
 
 
 def _around(thing: BodyGeometry, frame: int, thresholds: Thresholds) -> Interval:

@@ -10,9 +10,8 @@ from jaxtyping import Float
 from capar.model import geometry
 from capar.model.calibration import Calibration, Found, MovingGround, PairCalibration
 from capar.model.capture import Capture, PivotContact, Sensor, TagObject, TagType
-from capar.model.geometry import Holds, Series, Vector, runs
+from capar.model.geometry import Holds, Series, runs
 from extractors.bodies.bodies import Bodies, BodyGeometry, blocks
-from extractors.bodies.poses import Poses
 from extractors.contact.proximity import Body, body, distance, near, screened
 from extractors.contact.surfaces import surface
 from extractors.contact.touch_distances import (
@@ -34,12 +33,9 @@ FOOT = "foot"
 
 def soles(capture: Capture) -> Mapping[str, str]:
     """The agent of each sensor that is an acting foot, or is part of one, by sensor."""
-    return {
-        part.name: capture.agent_of(part)
-        for foot in capture.acting
-        if foot.end_effector == FOOT
-        for part in capture.parts_of(foot.name)
-    }
+    feet = (each for each in capture.acting if each.end_effector == FOOT)
+    parts = (part for foot in feet for part in capture.parts_of(foot.name))
+    return {part.name: capture.agent_of(part) for part in parts}
 
 
 def gliding(
@@ -86,18 +82,11 @@ def sole_velocities(
         pace = np.where(lowest & ~np.isnan(pace), pace, np.inf)
         stillest = moves[np.arange(len(moves)), pace.argmin(axis=1)]
         out[block] = stillest[block.start - first : block.stop - first]
-    return _known_nearest(out, foot.poses.lost)
-
-
-def _known_nearest(
-    velocities: Float[np.ndarray, "frames 2"], lost: Holds
-) -> Float[np.ndarray, "frames 2"]:
-    """Velocities with those that are unknown beside a loss filled; where lost they stay unknown."""
-    unknown = np.isnan(velocities).any(axis=1)
+    unknown = np.isnan(out).any(axis=1)
     known = np.flatnonzero(~unknown)
-    for frame in np.flatnonzero(unknown & ~lost) if known.size else ():
-        velocities[frame] = velocities[known[np.abs(known - frame).argmin()]]
-    return velocities
+    for frame in np.flatnonzero(unknown & ~foot.poses.lost) if known.size else ():
+        out[frame] = out[known[np.abs(known - frame).argmin()]]
+    return out
 
 
 def moving_grounds(
@@ -173,20 +162,6 @@ def with_meeting_hands(capture: Capture) -> Capture:
     if tolerance_m > limits.tolerance_most_m:
         return capture
     found: dict[str, Sensor] = {}
-    for one, other in _pairs(capture):
-        if _meet_free(capture, one, other, tolerance_m):
-            found |= {one.name: one, other.name: other}
-    if not found:
-        return capture
-    objects = tuple(
-        TagObject(each.name, TagType.SELF, each.stream, each.shape, HAND, agent=each.agent)
-        for each in found.values()
-    )
-    return replace(capture, objects=(*capture.objects, *objects))
-
-
-def _pairs(capture: Capture) -> Iterator[tuple[Sensor, Sensor]]:
-    """The two hands of each agent, where both have shapes and neither is an object already."""
     objects = {each.name for each in capture.objects}
     hands = [
         each
@@ -194,8 +169,16 @@ def _pairs(capture: Capture) -> Iterator[tuple[Sensor, Sensor]]:
         if each.end_effector == HAND and each.shape is not None and each.name not in objects
     ]
     for one, other in combinations(hands, 2):
-        if capture.agent_of(one) == capture.agent_of(other) and one.side != other.side:
-            yield one, other
+        same = capture.agent_of(one) == capture.agent_of(other) and one.side != other.side
+        if same and _meet_free(capture, one, other, tolerance_m):
+            found |= {one.name: one, other.name: other}
+    if not found:
+        return capture
+    added = tuple(
+        TagObject(each.name, TagType.SELF, each.stream, each.shape, HAND, agent=each.agent)
+        for each in found.values()
+    )
+    return replace(capture, objects=(*capture.objects, *added))
 
 
 def _meet_free(capture: Capture, one: Sensor, other: Sensor, tolerance_m: float) -> bool:
@@ -247,10 +230,8 @@ def counted_meetings(
         if not own or capture.agent_of(hands[one]) != capture.agent_of(hands[other]):
             yield True
         elif any(
-            (
-                name in (one, other) and (span[0] <= busy[1] and busy[0] <= span[1])
-                for name, busy in held
-            )
+            name in (one, other) and span[0] <= busy[1] and busy[0] <= span[1]
+            for name, busy in held
         ):
             yield False
         else:
@@ -286,19 +267,14 @@ def in_passing(
     end = int(np.searchsorted(times, times[last] + ASIDE_S - 1e-9))
     if not 0 <= begin < first or not last < end < len(times):
         return False
-    before = _course(one, other, (begin, first))
-    after = _course(one, other, (last, end))
+    frames = np.array([begin, first, last, end])
+    offsets = one.middles[frames] - other.middles[frames]
+    before = (offsets[1] - offsets[0]) / (times[first] - times[begin])
+    after = (offsets[3] - offsets[2]) / (times[end] - times[last])
     pace = float(np.linalg.norm(before))
     if not pace >= thresholds.passing_mps:
         return False
     return bool(before @ after >= thresholds.passing_share * pace**2)
-
-
-def _course(one: BodyGeometry, other: BodyGeometry, span: Interval) -> Vector:
-    """Mean velocity of a body's middle relative to another's between two frames [m/s]."""
-    offsets = [one.middles[frame] - other.middles[frame] for frame in span]
-    times = one.poses.smooth.times
-    return np.asarray((offsets[1] - offsets[0]) / (times[span[1]] - times[span[0]]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -339,24 +315,23 @@ def pair_distances(
     ``tolerance_m``: distance up to which surfaces count as touching [m].
     """
     evidence = Evidence(capture, bodies, thresholds)
-    found = _pair_distances(capture, bodies, tolerance_m, evidence)
-    yield from with_gaps(found, bodies, evidence)
-
-
-def _pair_distances(
-    capture: Capture, bodies: Bodies, tolerance_m: float, evidence: Evidence
-) -> Iterator[PairCalibration]:
-    thresholds = evidence.thresholds
+    left = thresholds.release_sigmas * gains(frame_rate(capture.times), thresholds)[0]
+    found: list[PairCalibration] = []
     for first, second in watched(capture, bodies):
         pivot = _pivot(capture, first.name, second.name)
         if pivot is not None:
-            yield stated_pair(capture, first, second, evidence, pivot.distance_m)
+            found.append(stated_pair(capture, first, second, evidence, pivot.distance_m))
         elif first.shape is None or second.shape is None:
-            yield estimated_pair(capture, first, second, evidence, tolerance_m)
-        elif first.shape is not None and second.shape is not None:
-            margin = _margin(first.poses, second.poses, frame_rate(capture.times), thresholds)
+            found.append(estimated_pair(capture, first, second, evidence, tolerance_m))
+        else:
+            # Room for what noise is left in the distance of two bodies; none for quiet ones.
+            poses = [each.poses for each in (first, second) if not each.poses.rests]
+            noises = [each.noise.position_m for each in poses]
+            noisy = [each for each in noises if each > thresholds.smoothing_noise_m]
+            margin = left * float(np.linalg.norm(noisy)) if noisy else 0.0
             release = tolerance_m + min(margin, tolerance_m)
-            yield PairCalibration(first.name, second.name, tolerance_m, release)
+            found.append(PairCalibration(first.name, second.name, tolerance_m, release))
+    yield from with_gaps(found, bodies, evidence)
 
 
 def contacts(
@@ -404,10 +379,7 @@ def contacts(
         ):
             if in_passing(first, second, interval, limits):
                 continue
-            if pair.pivots:
-                gap = float(points_apart(pair, first, second)[interval[0]])
-            else:
-                gap = distance(one, two, interval[0])
+            gap = float(apart[interval[0]]) if pair.pivots else distance(one, two, interval[0])
             lingers = interval[1] + 1 < len(near_by) and bool(near_by[interval[1] + 1 :].all())
             found.append(Contact(first.name, second.name, interval, gap, lingers=lingers))
     direct = tuple(_direct(capture, found, surfaces, calibration))
@@ -501,19 +473,11 @@ def bridged(touching: Holds, near_by: Holds, *, edge: int = 0) -> Holds:
     return out
 
 
-def _margin(first: Poses, second: Poses, rate_hz: float, thresholds: Thresholds) -> float:
-    """Room for what noise is left in the distance of two bodies [m]; none for quiet ones."""
-    noises = [each.noise.position_m for each in (first, second) if not each.rests]
-    noisy = [each for each in noises if each > thresholds.smoothing_noise_m]
-    left = thresholds.release_sigmas * gains(rate_hz, thresholds)[0]
-    return left * float(np.linalg.norm(noisy)) if noisy else 0.0
-
-
 def _pivot(capture: Capture, first: str, second: str) -> PivotContact | None:
-    for pivot in capture.pivot_contacts:
-        if {pivot.first, pivot.second} == {first, second}:
-            return pivot
-    return None
+    known = (
+        each for each in capture.pivot_contacts if {each.first, each.second} == {first, second}
+    )
+    return next(known, None)
 
 
 def points_apart(pair: PairCalibration, first: BodyGeometry, second: BodyGeometry) -> Series:

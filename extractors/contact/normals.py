@@ -1,12 +1,9 @@
 """Patches of surfaces in contact and their normals."""
 
 from collections import OrderedDict
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
-from typing import TypeAlias
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -29,9 +26,6 @@ MOST_STEPS = 256
 BOX_DEPTHS = 3.0
 """Places further from the other body's box than so many depths of a patch are left out [1]."""
 
-FEW_CELLS = 512
-"""A triangle in more cells is so large that most of it may lie outside of the box [1]."""
-
 SAMPLED = 16
 """One place in so many says how near the surfaces are at least."""
 
@@ -43,9 +37,6 @@ LEAST_SHARE = 0.01
 
 Box = Float[np.ndarray, "2 3"]
 """Lowest and highest corner [m]."""
-
-_Near = tuple[Int[np.ndarray, "near"], Int[np.ndarray, "near"]]
-"""Which places of a surface are near another one, and to which of its places each is nearest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,15 +69,26 @@ def facing_normal(
     """
     if box is None:
         box = meeting_box(body.reshape(-1, 3), other.reshape(-1, 3), depth_m=depth_m)
-    spacing_m = max(SPACING_M, _spacing(box))
+    # No more places than enough on the largest side of the box.
+    sides = np.sort(np.maximum(box[1] - box[0], 0.0))
+    spacing_m = max(SPACING_M, float(np.sqrt(sides[1] * sides[2] / MANY_PLACES)))
     one = places(body, box, spacing_m=spacing_m, outward=solid[0])
     two = places(other, box, spacing_m=spacing_m, outward=solid[1])
     if not len(one.points) or not len(two.points):
         return None
-    near_one, near_two = _patch(one, two, max(depth_m, spacing_m))
-    total = _faced(two, one, *near_two) - _faced(one, two, *near_one)
+    depth_m = max(depth_m, spacing_m)
+    # Trees that are built faster than they could be searched, as few points ask them.
+    trees = [cKDTree(each.points, balanced_tree=False, compact_nodes=False) for each in (one, two)]
+    bound = (float(trees[1].query(one.points[::SAMPLED])[0].min()) + depth_m) * (1.0 + ROUNDED)
+    far_one, to_two = trees[1].query(one.points, distance_upper_bound=bound)
+    far_two, to_one = trees[0].query(two.points, distance_upper_bound=bound)
+    # The nearest pair is the same from either side.
+    reach = float(far_one.min()) + depth_m
+    some_one, some_two = np.flatnonzero(far_one <= reach), np.flatnonzero(far_two <= reach)
+    total = _faced(two, one, some_two, to_one[some_two])
+    total = total - _faced(one, two, some_one, to_two[some_one])
     length = float(np.linalg.norm(total))
-    area = float(one.areas[near_one[0]].sum() + two.areas[near_two[0]].sum())
+    area = float(one.areas[some_one].sum() + two.areas[some_two].sum())
     return total / length if length > LEAST_SHARE * area else None
 
 
@@ -108,7 +110,11 @@ def places(
 ) -> Places:
     """Places on triangles [m] within a box, spread evenly over each."""
     low, high = triangles.min(axis=1), triangles.max(axis=1)
-    some = _opposite_longest(triangles[((low <= box[1]) & (high >= box[0])).all(axis=1)])
+    some = triangles[((low <= box[1]) & (high >= box[0])).all(axis=1)]
+    # The corner first that the longest edge does not touch.
+    sides = np.linalg.norm(np.roll(some, -1, axis=1) - some, axis=2)
+    order = (sides.argmax(axis=1)[:, None] + np.array([2, 0, 1])) % 3
+    some = np.take_along_axis(some, order[:, :, None], axis=1)
     one, two = some[:, 1] - some[:, 0], some[:, 2] - some[:, 0]
     normal = np.cross(one, two)
     length = np.linalg.norm(normal, axis=1)
@@ -117,48 +123,15 @@ def places(
     for both in np.unique(steps).tolist():
         along, across = divmod(both, 2 * MOST_STEPS)
         rows = np.flatnonzero((steps == both) & (length > 0.0))
-        count = len(_spread(along, across)[0])
-        for group, u, v in _cells(some, rows, box, along, across):
-            points = some[group, None, 0] + u[:, None] * one[group, None]
-            points = points + v[:, None] * two[group, None]
-            inside = ((points >= box[0]) & (points <= box[1])).all(axis=2)
-            row = group[np.nonzero(inside)[0]]
-            found.append(
-                (points[inside], normal[row] / length[row, None], 0.5 * length[row] / count)
-            )
+        u, v = _spread(along, across)
+        points = some[rows, None, 0] + u[:, None] * one[rows, None]
+        points = points + v[:, None] * two[rows, None]
+        inside = ((points >= box[0]) & (points <= box[1])).all(axis=2)
+        row = rows[np.nonzero(inside)[0]]
+        areas = 0.5 * length[row] / len(u)
+        found.append((points[inside], normal[row] / length[row, None], areas))
     points, normals, areas = (np.concatenate(each) for each in zip(*found, strict=True))
     return Places(points, normals, areas, outward)
-
-
-def _cells(
-    triangles: Float[np.ndarray, "triangles 3 3"],
-    rows: Int[np.ndarray, "rows"],
-    box: Box,
-    along: int,
-    across: int,
-) -> Iterator[tuple[Int[np.ndarray, "group"], np.ndarray, np.ndarray]]:
-    """Triangles with the shares of their edges at which places may lie in a box."""
-    u, v = _spread(along, across)
-    if len(u) <= FEW_CELLS:
-        yield rows, u, v
-        return
-    for row in rows:
-        corner, *ends = triangles[row]
-        edges = np.stack([end - corner for end in ends], axis=1)
-        shares = np.linalg.pinv(edges) @ (np.array(list(product(*box.T))) - corner).T
-        slack = ROUNDED * (1.0 + np.abs(shares).max())
-        low, high = shares.min(axis=1) - slack, shares.max(axis=1) + slack
-        some = (u >= low[0]) & (u <= high[0]) & (v >= low[1]) & (v <= high[1])
-        yield np.array([row]), u[some], v[some]
-
-
-def _opposite_longest(
-    triangles: Float[np.ndarray, "triangles 3 3"],
-) -> Float[np.ndarray, "triangles 3 3"]:
-    """Each triangle with the corner first that its longest edge does not touch."""
-    sides = np.linalg.norm(np.roll(triangles, -1, axis=1) - triangles, axis=2)
-    order = (sides.argmax(axis=1)[:, None] + np.array([2, 0, 1])) % 3
-    return np.take_along_axis(triangles, order[:, :, None], axis=1)
 
 
 def _steps(edges: Float[np.ndarray, "edges 3"], spacing_m: float) -> np.ndarray:
@@ -175,30 +148,6 @@ def _spread(along: int, across: int) -> tuple[np.ndarray, np.ndarray]:
     u, v = both[0] / along, both[1] / across
     inside = u + v < 1.0
     return u[inside], v[inside]
-
-
-def _spacing(box: Box) -> float:
-    """How far places may be apart so that there are not too many [m]."""
-    sides = np.sort(np.maximum(box[1] - box[0], 0.0))
-    return float(np.sqrt(sides[1] * sides[2] / MANY_PLACES))
-
-
-def _patch(one: Places, two: Places, depth_m: float) -> tuple[_Near, _Near]:
-    """What of either surface is near the other one, and to which place of it."""
-    tree = _tree(two)
-    some = tree.query(one.points[::SAMPLED])[0]
-    bound = (float(some.min()) + depth_m) * (1.0 + ROUNDED)
-    far_one, to_two = tree.query(one.points, distance_upper_bound=bound)
-    # The nearest pair is the same from either side.
-    reach = float(far_one.min()) + depth_m
-    far_two, to_one = _tree(one).query(two.points, distance_upper_bound=bound)
-    near_one, near_two = np.flatnonzero(far_one <= reach), np.flatnonzero(far_two <= reach)
-    return (near_one, to_two[near_one]), (near_two, to_one[near_two])
-
-
-def _tree(of: Places) -> cKDTree:
-    """A search tree that is built faster than it could be searched, for few points ask it."""
-    return cKDTree(of.points, balanced_tree=False, compact_nodes=False)
 
 
 def _faced(
@@ -223,18 +172,11 @@ def _faced(
 SLACK_M = 1e-6
 """By so much the box is larger in which triangles are sought, since turning it rounds [m]."""
 
-_Normals: TypeAlias = dict[tuple[int, float], Vector | None]
-_KEPT: WeakKeyDictionary[BodyGeometry, WeakKeyDictionary[BodyGeometry, _Normals]] = (
-    WeakKeyDictionary()
-)
+_KEPT: OrderedDict[tuple[object, ...], Vector | None] = OrderedDict()
+"""Normals of the patches that were sought last, by shapes and poses: contacts and seats ask for the
+same ones, and windows of a recording begin at the same frames again and again."""
 
-
-_Poses: TypeAlias = tuple[bytes, bytes, bytes, bytes, float]
-_LATEST: OrderedDict[_Poses, Vector | None] = OrderedDict()
-"""Normals of the patches that were sought last, by shapes and poses: windows of a recording begin
-at the same frames again and again."""
-
-_MOST_LATEST = 512
+_MOST_KEPT = 4096
 
 
 def contact_normal(
@@ -242,61 +184,49 @@ def contact_normal(
 ) -> Vector | None:
     """The unit normal of a contact, from the other to the body, in the world; None if unknown.
 
-    Contacts and seats ask for the same ones, either way about, so those of patches are kept as
-    long as both bodies are: the other way about a normal is the opposite one, to the last digit.
-
     It is the mean normal of the patch where the true surfaces meet: what stands in a bowl lies on
     the bowl's bottom, however high the bowl's rim. Where either body has no shape, or the patch
     has no direction, it is the axis along which their outlines are furthest apart.
     """
     if np.isnan(body.middles[frame] - other.middles[frame]).any():
         return None
-    found = _kept_normal(body, other, frame, thresholds.patch_m)
+    found = _patch_normal(body, other, frame, thresholds.patch_m)
     return _between_outlines(body, other, frame) if found is None else found
-
-
-def _kept_normal(
-    body: BodyGeometry, other: BodyGeometry, frame: int, depth_m: float
-) -> Vector | None:
-    key = frame, depth_m
-    turned = _kept(other, body)
-    if key in turned:
-        opposite = turned[key]
-        return None if opposite is None else -opposite
-    kept = _kept(body, other)
-    if key not in kept:
-        kept[key] = _patch_normal(body, other, frame, depth_m)
-    return kept[key]
-
-
-def _kept(body: BodyGeometry, other: BodyGeometry) -> _Normals:
-    return _KEPT.setdefault(body, WeakKeyDictionary()).setdefault(other, {})
 
 
 def _patch_normal(
     body: BodyGeometry, other: BodyGeometry, frame: int, depth_m: float
 ) -> Vector | None:
-    """The mean normal of the patch where two surfaces meet; None where either has no shape."""
+    """The mean normal of the patch where two surfaces meet; None where either has no shape.
+
+    The other way about it is the opposite one, to the last digit.
+    """
     if body.shape is None or other.shape is None:
         return None
-    key = body.shape.digest, _pose(body, frame), other.shape.digest, _pose(other, frame), depth_m
-    found = _LATEST.pop(key) if key in _LATEST else _sought_normal(body, other, frame, depth_m)
-    _LATEST[key] = found
-    while len(_LATEST) > _MOST_LATEST:
-        _LATEST.popitem(last=False)
-    return found
-
-
-def _pose(body: BodyGeometry, frame: int) -> bytes:
-    return body.middles[frame].tobytes() + body.orientations[frame].tobytes()
+    one, two = (
+        (
+            each.shape.digest if each.shape else b"",
+            each.middles[frame].tobytes(),
+            each.orientations[frame].tobytes(),
+        )
+        for each in (body, other)
+    )
+    if (two, one, depth_m) in _KEPT:
+        opposite = _KEPT[two, one, depth_m]
+        return None if opposite is None else -opposite
+    key = one, two, depth_m
+    if key not in _KEPT:
+        _KEPT[key] = _sought_normal(
+            surface(body.shape), surface(other.shape), body, other, frame, depth_m
+        )
+        if len(_KEPT) > _MOST_KEPT:
+            _KEPT.popitem(last=False)
+    return _KEPT[key]
 
 
 def _sought_normal(
-    body: BodyGeometry, other: BodyGeometry, frame: int, depth_m: float
+    one: Surface, two: Surface, body: BodyGeometry, other: BodyGeometry, frame: int, depth_m: float
 ) -> Vector | None:
-    assert body.shape is not None
-    assert other.shape is not None
-    one, two = surface(body.shape), surface(other.shape)
     corners = _placed(one.corners, body, frame), _placed(two.corners, other, frame)
     box = meeting_box(*corners, depth_m=depth_m)
     return facing_normal(

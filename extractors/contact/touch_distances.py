@@ -45,7 +45,8 @@ def steady_in(carrier: Stream, thing: Stream, thresholds: Thresholds) -> Holds:
     reach = _half_window(thing, thresholds)
     with np.errstate(invalid="ignore"):
         travels = np.asarray(way >= thresholds.co_motion_way_m)
-    for begin, end in geometry.runs(_widened(travels, reach)):
+    wide = maximum_filter1d(travels.view(np.uint8), 2 * reach + 1, mode="nearest")
+    for begin, end in geometry.runs(wide.astype(bool)):
         some = slice(begin, end + 1)
         places = in_either_frame(carrier, thing, some)
         stray = np.minimum(*(spread(each, thing, thresholds) for each in places))
@@ -85,12 +86,6 @@ def spread(points: Points, stream: Stream, thresholds: Thresholds) -> Series:
 def _half_window(stream: Stream, thresholds: Thresholds) -> int:
     """Frames of the window of co-motion to either side [1]."""
     return max(1, round(0.5 * thresholds.co_motion_window_s * frame_rate(stream.times)))
-
-
-def _widened(holds: Holds, reach: int) -> Holds:
-    """Where something holds at a frame no further away than so many."""
-    wide = maximum_filter1d(holds.view(np.uint8), 2 * reach + 1, mode="nearest")
-    return np.asarray(wide.astype(bool))
 
 
 Vector = tuple[float, float, float]
@@ -170,13 +165,12 @@ class Evidence:
             for (hand, thing), frames in self.carried.items()
         }
 
-    def held(self, thing: str) -> Frames:
-        """Where some end-effector surely holds a thing."""
-        return self._any(frames for (_, name), frames in self.gripped.items() if name == thing)
-
-    def busy(self, hand: str) -> Frames:
-        """Where an end-effector surely holds something."""
-        return self._any(frames for (name, _), frames in self.gripped.items() if name == hand)
+    def held(self, name: str) -> Frames:
+        """Where some end-effector surely holds a thing, or an end-effector something."""
+        out = np.zeros(len(self.capture.times), dtype=bool)
+        for pair, frames in self.gripped.items():
+            out |= frames & (name in pair)
+        return out
 
     def unheld_rest(self, thing: str) -> Frames:
         """Where a thing rests and nobody surely holds it."""
@@ -194,13 +188,16 @@ class Evidence:
         free = mask([each for each in spans if each[0] > 0 and each[1] < last], last + 1)
         known = {thing for name, thing in self.gripped if name == hand}
         others = [each for each in self._mobile if each.name not in known and each.name != hand]
-        return self._nearest(own, free & ~self.busy(hand), home, others)
+        return self._nearest(own, free & ~self.held(hand), home, others)
 
     def dwelling(self, thing: str) -> dict[str, Frames]:
         """By object, where a held thing dwells by it and by no nearer one."""
         own = self.bodies.objects[thing]
         apart = self.unheld_rest(thing)
-        dwells = self._dwells(own) & self.held(thing) & ~self._laid_down(thing)
+        # Where it is at a place at which it also rests while nobody holds it, it is laid down.
+        spans = [(a, z) for a, z in self._rests(thing) if apart[a : z + 1].any()]
+        laid_down = mask(spans, len(self.capture.times))
+        dwells = self._dwells(own) & self.held(thing) & ~laid_down
         others = [each for each in self._mobile if each.name != thing]
         return self._nearest(own, dwells, apart, others)
 
@@ -210,7 +207,8 @@ class Evidence:
         """By object that rests by itself, where it is the nearest, if nearer than when apart."""
         gaps: dict[str, Series] = {}
         for other in others:
-            gap = _origins_apart(own, other)
+            offset = own.poses.settled.positions - other.poses.settled.positions
+            gap = np.linalg.norm(offset, axis=1)
             limit = self.thresholds.settle_reach_m
             if apart.any():
                 usual = float(np.nanmedian(gap[apart]))
@@ -244,12 +242,6 @@ class Evidence:
         with np.errstate(invalid="ignore"):
             return np.asarray(way <= self.thresholds.dwell_m)
 
-    def _laid_down(self, thing: str) -> Frames:
-        """Where a thing is at a place at which it also rests while nobody holds it."""
-        unheld = self.unheld_rest(thing)
-        spans = [(a, z) for a, z in self._rests(thing) if unheld[a : z + 1].any()]
-        return mask(spans, len(self.capture.times))
-
     def _rests(self, thing: str) -> list[tuple[int, int]]:
         body, last = self.bodies.objects[thing], len(self.capture.times) - 1
         own = self.capture.tag_object(thing)
@@ -265,31 +257,12 @@ class Evidence:
 
     @cached_property
     def _mobile(self) -> list[BodyGeometry]:
-        return [
-            each
-            for each in self._things
-            if self.capture.tag_object(each.name).tag is TagType.MOBILE
-        ]
-
-    @cached_property
-    def _things(self) -> list[BodyGeometry]:
-        things = (each for each in self.capture.objects if each.tag is not TagType.SELF)
-        return [self.bodies.objects[each.name] for each in things]
+        objects = self.capture.objects
+        return [self.bodies.objects[each.name] for each in objects if each.tag is TagType.MOBILE]
 
     def _lasts(self, frames: Frames) -> bool:
         step_s = 1.0 / frame_rate(self.capture.times)
         return bool(frames.sum() * step_s >= self.thresholds.rest_minimum_s)
-
-    def _any(self, masks: Iterable[Frames]) -> Frames:
-        out = np.zeros(len(self.capture.times), dtype=bool)
-        for frames in masks:
-            out |= frames
-        return out
-
-
-def _origins_apart(one: BodyGeometry, other: BodyGeometry) -> Series:
-    offset = one.poses.settled.positions - other.poses.settled.positions
-    return np.asarray(np.linalg.norm(offset, axis=1))
 
 
 SAMPLES = 100
@@ -458,12 +431,8 @@ def _surface(each: BodyGeometry) -> Surface:
     return surface(_SPECK if each.shape is None else each.shape)
 
 
-def _speck() -> Shape:
-    ball = trimesh.creation.icosphere(subdivisions=0, radius=POINT_M)
-    return Shape(np.asarray(ball.vertices), np.asarray(ball.faces), ShapeSource.STAND_IN, "a point")
-
-
-_SPECK = _speck()
+_BALL = trimesh.creation.icosphere(subdivisions=0, radius=POINT_M)
+_SPECK = Shape(np.asarray(_BALL.vertices), np.asarray(_BALL.faces), ShapeSource.STAND_IN, "a point")
 
 _TOUCHABLE: WeakKeyDictionary[BodyGeometry, Body] = WeakKeyDictionary()
 """Of bodies that were asked for before: each is in many pairs."""

@@ -82,16 +82,11 @@ def onset(
     if stop <= seen or stop - start < FEWEST_FRAMES:
         return seen
     times = (np.arange(start, stop) - seen) / rate_hz
-    told = weights(smooth[start:stop], noise[start:stop])
+    spread = np.maximum(noise[start:stop], QUIET) ** 2 + (STRAY * smooth[start:stop]) ** 2
     earliest_s = max(float(times[0]), -most / rate_hz)
-    track = Growth(way[start:stop], times, told, place)
+    track = Growth(way[start:stop], times, 1.0 / spread, place)
     begin_s = beginning_s(track, earliest_s, float(times[-1]))
     return seen + round(begin_s * rate_hz)
-
-
-def weights(smooth: Ways, noise: Ways) -> Ways:
-    """How much each displacement tells of the beginning: its inverse variance [1]."""
-    return np.asarray(1.0 / (np.maximum(noise, QUIET) ** 2 + (STRAY * smooth) ** 2))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,7 +100,7 @@ class Growth:
     """When [s]; it is first seen at 0."""
 
     told: Ways
-    """How much each frame tells (``weights``)."""
+    """How much each frame tells of the beginning: its inverse variance [1]."""
 
     place: float
     """Deviation of the place from where it was taken to be [1]."""
@@ -168,18 +163,15 @@ def _misfit(
     """The weighted sum of squares that each profile leaves, from each beginning."""
     since = np.maximum(track.times[None, :] - tries[:, None], 0.0)
     paces = np.array([1.0 / stroke_s for stroke_s in STROKES_S])
-    profiles = np.concatenate([since[None], _stroke(since[None] * paces[:, None, None])])
+    part = np.minimum(since[None] * paces[:, None, None], 1.0)
+    # A steady speed, and the way done of strokes of least jerk.
+    strokes = part * part * part * (10.0 + part * (6.0 * part - 15.0))
+    profiles = np.concatenate([since[None], strokes])
     power = track.product(profiles, profiles)
     shared = np.maximum(track.product(profiles, track.way), 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         explained = np.where(power > 0.0, shared**2 / power, 0.0)
     return np.asarray(track.product(track.way, track.way) - explained)
-
-
-def _stroke(shares: Float[np.ndarray, "*some"]) -> Float[np.ndarray, "*some"]:
-    """Way done of a stroke of least jerk, from 0 to 1, after a share of its time."""
-    part = np.minimum(shares, 1.0)
-    return np.asarray(part * part * part * (10.0 + part * (6.0 * part - 15.0)))
 
 
 AS_ONE = 2.0
@@ -220,23 +212,6 @@ class Direction:
         return max(float(np.linalg.norm(self.to)) * along, QUIET)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Mount:
-    """How a body sits on another one that it moves with."""
-
-    lever: Vector
-    """Its origin in the frame of the other [m]."""
-
-    turn: Quaternion
-    """Its orientation in that frame, a unit quaternion w x y z."""
-
-    def carried(self, stream: Stream, frames: Frames) -> tuple[Places, Turns]:
-        """Its poses by those of the other."""
-        turns = stream.orientations[frames]
-        places = stream.positions[frames] + rotation_matrices(turns) @ self.lever
-        return places, geometry.products(turns, self.turn[None])
-
-
 def way_out(
     poses: Poses,
     partners: Collection[Poses],
@@ -268,12 +243,12 @@ def way_out(
     for partner in partners:
         held = np.arange(len(frames)) >= seen
         for _ in range(REFINED):
-            mount = _mount(poses, partner, frames, held.astype(float))
-            its = ahead.noise(partner, float(np.linalg.norm(mount.lever)))
-            calm = ahead.along(*mount.carried(partner.smooth, frames))
+            lever, turn = _mount(poses, partner, frames, held.astype(float))
+            its = ahead.noise(partner, float(np.linalg.norm(lever)))
+            calm = ahead.along(*_carried(partner.smooth, frames, lever, turn))
             differ = (smooth - calm) ** 2 - (AS_ONE * left) ** 2 * (own**2 + its**2)
             held = its**2 / (its**2 + np.maximum(differ, 0.0))
-        raw = ahead.along(*mount.carried(partner.filled, frames))
+        raw = ahead.along(*_carried(partner.filled, frames, lever, turn))
         known = ~np.isnan(raw * held)
         total[known] += (raw * held)[known] / its**2
         told[known] += held[known] / its**2
@@ -293,21 +268,29 @@ def _direction(poses: Poses, last: int, stay: RestPose, unit: Floor) -> Directio
     return Direction(stay, to / (np.linalg.norm(to) * one), not goes)
 
 
-def _mount(body: Poses, other: Poses, frames: Frames, held: Ways) -> Mount:
-    """How a body sits on another one, in the mean over frames by how much it is held in each.
+def _carried(
+    stream: Stream, frames: Frames, lever: Vector, turn: Quaternion
+) -> tuple[Places, Turns]:
+    """Poses of a body by those of another on which it sits."""
+    places, turns = _at(stream, frames)
+    return places + rotation_matrices(turns) @ lever, geometry.products(turns, turn[None])
 
-    It is NaN where it is never known.
+
+def _mount(body: Poses, other: Poses, frames: Frames, held: Ways) -> tuple[Vector, Quaternion]:
+    """A body's origin [m] and orientation in the frame of another on which it sits.
+
+    The mean over frames by how much it is held in each; NaN where it is never known.
     """
     places, turns = _at(body.smooth, frames)
     origins, bearings = _at(other.smooth, frames)
     known = ~np.isnan(places[:, 0] + origins[:, 0]) & (held > 0.0)
     if not known.any():
-        return Mount(np.full(3, np.nan), np.full(4, np.nan))
+        return np.full(3, np.nan), np.full(4, np.nan)
     offsets = (places - origins)[known, None, :] @ rotation_matrices(bearings[known])
     within = geometry.products(_inverse(bearings[known]), turns[known])
     turn = held[known] @ within
     lever = np.average(offsets[:, 0], axis=0, weights=held[known])
-    return Mount(lever, turn / np.linalg.norm(turn))
+    return lever, turn / np.linalg.norm(turn)
 
 
 def _inverse(turns: Turns) -> Turns:
@@ -357,59 +340,41 @@ def motion_edges(
     after = [each for each in rests if each.interval[1] > moved[1]]
     first, last = moved
     if before:
-        first = _left(poses, before[-1], moved, floor, thresholds, partners)
+        first = _edge(poses, before[-1], moved, 1, floor, thresholds, partners)
     if after:
-        last = _arrived(poses, after[0].at_first, moved, floor, thresholds, partners)
+        last = _edge(poses, after[0].at_first, moved, -1, floor, thresholds, partners)
     creeps = round(thresholds.creep_s * frame_rate(poses.filled.times))
     first, last = max(first, moved[0] - creeps), min(last, moved[1] + creeps)
     return min(first, moved[0]), max(last, moved[1])
 
 
-def _left(
+def _edge(
     poses: Poses,
     stay: RestPose,
     moved: Interval,
+    step: int,
     floor: Floor,
     thresholds: Thresholds,
     partners: Collection[Poses],
 ) -> int:
-    """When an object left a place."""
+    """When an object left a place (``step`` 1), or was at a place to stay (``step`` -1)."""
     near = hair(poses, thresholds)
-    edge = _gone(poses, stay, moved, near)
-    nudged = _nudged(poses, np.arange(moved[0], edge - 1, -1), stay, near, thresholds)
+    begin, end = moved[::step]
+    edge = _away(poses, stay, begin, step, near)
+    nudged = _nudged(poses, np.arange(begin, edge - step, -step), stay, near, thresholds)
     if nudged is not None:
-        stay, edge = nudged, _gone(poses, nudged, moved, near)
-    return _onset(poses, stay, (edge, max(moved[1], edge)), 1, floor, thresholds, partners)
+        stay, edge = nudged, _away(poses, nudged, begin, step, near)
+    motion = edge, max(end, edge) if step > 0 else min(end, edge)
+    return _onset(poses, stay, motion, step, floor, thresholds, partners)
 
 
-def _arrived(
-    poses: Poses,
-    stay: RestPose,
-    moved: Interval,
-    floor: Floor,
-    thresholds: Thresholds,
-    partners: Collection[Poses],
-) -> int:
-    """When an object was at a place to stay."""
-    near = hair(poses, thresholds)
-    edge = _come(poses, stay, moved, near)
-    nudged = _nudged(poses, np.arange(moved[1], edge + 1), stay, near, thresholds)
-    if nudged is not None:
-        stay, edge = nudged, _come(poses, nudged, moved, near)
-    return _onset(poses, stay, (edge, min(moved[0], edge)), -1, floor, thresholds, partners)
-
-
-def _gone(poses: Poses, stay: RestPose, moved: Interval, near: Floor) -> int:
-    """The first frame at which an object that moves next is no longer at a place."""
+def _away(poses: Poses, stay: RestPose, begin: int, step: int, near: Floor) -> int:
+    """The frame next to a motion at which an object is first, or last, not at a place."""
     at_place = partial(rests_at, poses.smooth, stay=stay, floor=near)
-    there = last_where(at_place, moved[0] - 1)
-    return stay.interval[0] if there is None else there + 1
-
-
-def _come(poses: Poses, stay: RestPose, moved: Interval, near: Floor) -> int:
-    """The last frame at which an object that has moved is not yet at a place."""
-    at_place = partial(rests_at, poses.smooth, stay=stay, floor=near)
-    there = first_where(at_place, moved[1] + 1, len(poses.smooth.times))
+    if step > 0:
+        there = last_where(at_place, begin - 1)
+        return stay.interval[0] if there is None else there + 1
+    there = first_where(at_place, begin + 1, len(poses.smooth.times))
     return stay.interval[1] if there is None else there - 1
 
 
@@ -610,16 +575,12 @@ def before_seen(grows: Float[np.ndarray, "some"], reach: float, most: int) -> in
         return 0
     middle = float(np.sqrt(begin * end))
     half = int(np.flatnonzero(grows[: far + 1] >= middle)[0])
-    tries = [
-        (_lasted(begin, end, far, power), _lasted(begin, middle, half, power)) for power in POWERS
-    ]
+    tries = []
+    for power in POWERS:
+        first, second, last = (value ** (1.0 / power) for value in (begin, middle, end))
+        # How long it took to ``begin`` if it then takes so many frames to the end or the middle.
+        tries.append((far * first / (last - first), half * first / (second - first)))
     whole, part = min(tries, key=lambda both: abs(1.0 - both[1] / both[0]))
     if abs(1.0 - part / whole) > AGREEMENT:
         most = round(most * UNSURE)
     return min(round(whole), most)
-
-
-def _lasted(begin: float, end: float, frames: int, power: float) -> float:
-    """How many frames it took to ``begin`` if it then takes so many to ``end``."""
-    first, last = begin ** (1.0 / power), end ** (1.0 / power)
-    return frames * first / (last - first)

@@ -1,6 +1,6 @@
 """How bodies are arranged to each other, keep together, and are gripped."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -52,7 +52,7 @@ class Pair:
     @cached_property
     def gap(self) -> Series:
         """Distance of their boxes along the world's axes [m]; zero where they overlap."""
-        return gap(self.body, self.other)
+        return boxes_apart(self.body, self.other, slice(None))
 
     @cached_property
     def aside(self) -> Series:
@@ -66,11 +66,6 @@ class Pair:
             comes = np.asarray(self.gap <= self.thresholds.near_m)
             stays = np.asarray(self.gap <= self.thresholds.near_stays_m)
         return lasting(comes, stays)
-
-    @property
-    def give_m(self) -> float:
-        """How far bodies may cut each other where they touch [m]."""
-        return self.thresholds.tolerance_most_m
 
     @cached_property
     def shares(self) -> tuple[Series, Series]:
@@ -94,7 +89,7 @@ class Pair:
                 height = self._heights(points, planes, some)
                 within[some] = (height[:, :count] <= 0.0).mean(axis=1)
                 ends = np.concatenate([height[:, : len(corners)], height[:, count:]], axis=1)
-                deep[some] = (ends <= -self.give_m).mean(axis=1)
+                deep[some] = (ends <= -self.thresholds.tolerance_most_m).mean(axis=1)
         return within, deep
 
     def _heights(
@@ -147,14 +142,16 @@ def above(pair: Pair) -> Holds:
     low, high = pair.body.boxes[0][:, 2], pair.other.boxes[1][:, 2]
     rise = pair.body.middles[:, 2] - high
     with np.errstate(invalid="ignore"):
-        return np.asarray((low >= high - pair.give_m) & (rise > 0.0) & (pair.aside <= rise))
+        return np.asarray(
+            (low >= high - pair.thresholds.tolerance_most_m) & (rise > 0.0) & (pair.aside <= rise)
+        )
 
 
 def below(pair: Pair) -> Holds:
     """It is lower than the other's bottom, under its shadow."""
     high, low = pair.body.boxes[1][:, 2], pair.other.boxes[0][:, 2]
     with np.errstate(invalid="ignore"):
-        return np.asarray((high <= low + pair.give_m) & (pair.aside <= 0.0))
+        return np.asarray((high <= low + pair.thresholds.tolerance_most_m) & (pair.aside <= 0.0))
 
 
 def beside(pair: Pair) -> Holds:
@@ -193,22 +190,17 @@ def between(body: BodyGeometry, one: BodyGeometry, other: BodyGeometry) -> Holds
             "ij,ij->i", line, line
         )
         off = np.linalg.norm(body.middles - one.middles - share[:, None] * line, axis=1)
-        wide = np.minimum(_radius(one), _radius(other))
+        wide = min(float(np.linalg.norm(each.corners, axis=1).max()) for each in (one, other))
         tube = np.flatnonzero((share > 0.0) & (share < 1.0) & (off <= wide))
     out = np.zeros(len(share), dtype=bool)
     out[tube] = ~_holds(one, body.middles, tube) & ~_holds(other, body.middles, tube)
     return out
 
 
-def gap(body: BodyGeometry, other: BodyGeometry) -> Series:
-    """Distance of the boxes of two bodies along the world's axes [m]; zero where they overlap."""
-    return boxes_apart(body, other, slice(None))
-
-
 def boxes_apart(
     body: BodyGeometry, other: BodyGeometry, frames: Int[np.ndarray, "some"] | slice
 ) -> Float[np.ndarray, "some"]:
-    """The same at some frames."""
+    """Distance of two bodies' boxes along the world's axes [m]; zero where they overlap."""
     low, high = (ends[frames] for ends in body.boxes)
     bottom, top = (ends[frames] for ends in other.boxes)
     outside = np.maximum(np.maximum(low - top, bottom - high), 0.0)
@@ -252,10 +244,6 @@ def beyond_shadow(point: Places, low: Places, high: Places) -> Series:
     return np.asarray(np.linalg.norm(outside[:, :2], axis=1))
 
 
-def _radius(body: BodyGeometry) -> float:
-    return float(np.linalg.norm(body.corners, axis=1).max())
-
-
 def _holds(
     box: BodyGeometry, points: Places, frames: Int[np.ndarray, "some"]
 ) -> Bool[np.ndarray, "some"]:
@@ -293,21 +281,18 @@ def company(
                 continue
             parts = bodies.on_end_effector(other.name) if other.name in bodies.parts else (other,)
             reach_m = thresholds.company_reach_m if other.name in carriers else np.inf
-            for one, span in _any_together(parts, thing, capture, thresholds):
+            # One finger of a hand may carry it.
+            together = (
+                (one, span)
+                for one in parts
+                for span in _together(one.poses.settled, thing.poses.settled, capture, thresholds)
+            )
+            for one, span in together:
                 near = parts if one is other else (one,)
                 gaps = [_gap(part, thing, span, calibration, reach_m) for part in near]
                 gap = min(filter(np.isfinite, gaps), default=np.inf)
                 if np.isfinite(gap):
                     yield MovesWith(name, other.name, *span, round(1000.0 * gap))
-
-
-def _any_together(
-    parts: Sequence[BodyGeometry], thing: BodyGeometry, capture: Capture, thresholds: Thresholds
-) -> Iterator[tuple[BodyGeometry, Interval]]:
-    """When a thing is steady in the frame of a hand or of a finger: one finger may carry it."""
-    for one in parts:
-        for span in _together(one.poses.settled, thing.poses.settled, capture, thresholds):
-            yield one, span
 
 
 def _together(
@@ -376,14 +361,10 @@ def _gap(
         known = some[~lost]
         apart = boxes_apart(other, thing, known)
         if not known.size or np.median(apart) <= reach_m:
-            apart = np.array([_surfaces_apart(other, thing, int(frame)) for frame in known])
+            both = [[touchable_at(each, int(f)) for each in (other, thing)] for f in known]
+            apart = np.array([distance(one, two, 0) for one, two in both])
     known_m = apart[~np.isnan(apart)]
     return max(0.0, float(np.median(known_m)) - touch_m) if known_m.size else float("nan")
-
-
-def _surfaces_apart(one: BodyGeometry, other: BodyGeometry, frame: int) -> float:
-    """Distance of two bodies' surfaces at a frame [m]."""
-    return distance(touchable_at(one, frame), touchable_at(other, frame), 0)
 
 
 FEWEST_FRAMES = 5

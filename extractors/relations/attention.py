@@ -142,7 +142,11 @@ def _distances(seen: Surface, poses: Poses, origins: Places, rays: Places, limit
     keep = enters < limit[may]
     may, start, ray = may[keep], start[keep], ray[keep]
     if may.size:
-        out[may] = _surface_distances(seen, start, ray)
+        points, index, _ = seen.mesh.ray.intersects_location(
+            start + BEHIND_M * ray, ray, multiple_hits=False
+        )
+        if len(index):
+            out[may[index]] = np.einsum("ij,ij->i", points - start[index], ray[index])
     return out
 
 
@@ -157,15 +161,3 @@ def _box(
     enters = np.minimum(one, two).max(axis=1)
     leaves = np.maximum(one, two).min(axis=1)
     return np.where((enters <= leaves) & (leaves >= 0.0), np.maximum(enters, 0.0), np.inf)
-
-
-def _surface_distances(
-    seen: Surface, start: Float[np.ndarray, "rays 3"], ray: Float[np.ndarray, "rays 3"]
-) -> Float[np.ndarray, "rays"]:
-    out = np.full(len(start), np.inf)
-    points, index, _ = seen.mesh.ray.intersects_location(
-        start + BEHIND_M * ray, ray, multiple_hits=False
-    )
-    if len(index):
-        out[index] = np.einsum("ij,ij->i", points - start[index], ray[index])
-    return out

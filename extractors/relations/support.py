@@ -46,7 +46,8 @@ def bearing(
         feet = [each for each in own if each.end_effector == FOOT and not each.part_of]
         if len(feet) == 2:
             level_m = calibration.foot_level(agent.name)
-            middle = _middle(own, bodies)
+            trunk = trunk_sensor(own)
+            middle = bodies.sensors[trunk.name].poses.smooth.positions if trunk else None
             yield from _loads(capture, bodies, feet, middle, known, level_m, thresholds)
 
 
@@ -66,7 +67,11 @@ def _loads(
         feet_geometry[0].middles, feet_geometry[1].middles, down[0], down[1], middle, thresholds
     )
     for foot, standing, own in zip(feet, down, (share, 1.0 - share), strict=True):
-        for how, holds in _shares(own, standing, thresholds).items():
+        with np.errstate(invalid="ignore"):
+            whole = standing & (own >= 1.0 - thresholds.touch_load_share)
+            none = standing & (own <= thresholds.touch_load_share)
+        part = standing & ~np.isnan(own) & ~whole & ~none
+        for how, holds in ((WHOLE, whole), (PART, part), (NONE, none)):
             for span in intervals(
                 holds,
                 capture.times,
@@ -108,20 +113,6 @@ def share_of_first(
     return np.asarray(out)
 
 
-def _shares(share: Series, down: Holds, thresholds: Thresholds) -> dict[str, Holds]:
-    """By word, the frames in which a foot that is down bears so much."""
-    with np.errstate(invalid="ignore"):
-        whole = down & (share >= 1.0 - thresholds.touch_load_share)
-        none = down & (share <= thresholds.touch_load_share)
-        return {WHOLE: whole, PART: down & ~np.isnan(share) & ~whole & ~none, NONE: none}
-
-
-def _middle(sensors: Iterable[Sensor], bodies: Bodies) -> Places | None:
-    """Where the trunk's sensor nearest to the body's middle is, if there is one."""
-    trunk = trunk_sensor(sensors)
-    return None if trunk is None else bodies.sensors[trunk.name].poses.smooth.positions
-
-
 def _down(
     bodies: Bodies,
     feet: Sequence[BodyGeometry],
@@ -129,23 +120,21 @@ def _down(
     level_m: float,
     thresholds: Thresholds,
 ) -> list[Holds]:
-    """Frames in which each foot is down."""
-    out, resting_low = [], []
+    """Frames in which each foot is down: something bears it from below, or it rests low."""
+    out = []
     for foot in feet:
-        spans = [
-            (each.first, each.last)
-            for each in touches
-            if each.body == foot.name
-            and each.other in bodies.objects
-            and _bears(bodies, foot, bodies.objects[each.other], each.first, thresholds)
-        ]
-        out.append(mask(spans, len(foot.middles)))
-        resting_low.append(_heights_at_rest(foot, thresholds))
-    with np.errstate(invalid="ignore"):
-        return [
-            bearing_foot | (low <= level_m + thresholds.level_m)
-            for bearing_foot, low in zip(out, resting_low, strict=True)
-        ]
+        spans = []
+        for each in touches:
+            if each.body == foot.name and each.other in bodies.objects:
+                other = bodies.objects[each.other]
+                part = touching_part(bodies, foot.name, other, each.first)
+                normal = contact_normal(part, other, each.first, thresholds)
+                if normal is not None and normal[2] >= thresholds.steep:
+                    spans.append((each.first, each.last))
+        with np.errstate(invalid="ignore"):
+            low = _heights_at_rest(foot, thresholds) <= level_m + thresholds.level_m
+        out.append(mask(spans, len(foot.middles)) | low)
+    return out
 
 
 def foot_level(feet: Sequence[BodyGeometry], thresholds: Thresholds) -> float | None:
@@ -161,15 +150,6 @@ def _heights_at_rest(foot: BodyGeometry, thresholds: Thresholds) -> Series:
     """Height of a foot's lowest point while it rests [m]; NaN while it does not."""
     low = foot.boxes[0][:, 2]
     return np.where(mask(list(resting(foot.poses, thresholds)), len(low)), low, np.nan)
-
-
-def _bears(
-    bodies: Bodies, foot: BodyGeometry, thing: BodyGeometry, frame: int, thresholds: Thresholds
-) -> bool:
-    """Whether a thing that a foot begins to touch bears it from below."""
-    part = touching_part(bodies, foot.name, thing, frame)
-    normal = contact_normal(part, thing, frame, thresholds)
-    return normal is not None and bool(normal[2] >= thresholds.steep)
 
 
 def rides(
@@ -189,11 +169,8 @@ def rides(
     ``load``: the body. ``bearer``: what may bear it. ``touching``: their contact, as a closed
     interval of frames.
     """
-    for begin, end in motions:
-        first, last = max(begin, touching[0]), min(end, touching[1])
-        if first < last and _goes_along(load, bearer, (first, last), thresholds):
-            return True
-    return False
+    spans = [(max(begin, touching[0]), min(end, touching[1])) for begin, end in motions]
+    return any(a < z and _goes_along(load, bearer, (a, z), thresholds) for a, z in spans)
 
 
 def _goes_along(
@@ -205,9 +182,7 @@ def _goes_along(
     own = np.swapaxes(bearer.turns_at(part), 1, 2) @ offset[..., None]
     if np.isnan(own).any():
         return False
-    contained = [
-        _contains(bearer, load, frame) and _bottom_below(bearer, load, frame) for frame in span
-    ]
+    contained = [_contains(bearer, load, frame) for frame in span]
     if not contained[0]:
         normal = contact_normal(load, bearer, first, thresholds)
         if normal is None or normal[2] < thresholds.steep:
@@ -220,27 +195,17 @@ def _goes_along(
 
 
 def _contains(bearer: BodyGeometry, load: BodyGeometry, frame: int) -> bool:
-    """Whether the middle of a load is within the convex outline of its bearer, which is larger."""
-    if bearer.planes is None or _size(load) >= _size(bearer):
+    """Whether a load's middle is in the hull of its larger bearer, whose surface is below it."""
+    sizes = [float(np.prod(each.shape.size)) if each.shape else 0.0 for each in (load, bearer)]
+    if bearer.planes is None or bearer.shape is None or sizes[0] >= sizes[1]:
         return False
-    point = bearer.turn(frame).T @ (load.middles[frame] - bearer.middles[frame])
-    return bool((bearer.planes[:, :3] @ point + bearer.planes[:, 3] <= 0.0).all())
-
-
-def _bottom_below(bearer: BodyGeometry, load: BodyGeometry, frame: int) -> bool:
-    """Whether the bearer's true surface is below the middle of a load, as a bottom is."""
-    if bearer.shape is None:
+    point = (load.middles[frame] - bearer.middles[frame]) @ bearer.turn(frame)
+    if (bearer.planes[:, :3] @ point + bearer.planes[:, 3] > 0.0).any():
         return False
     down = np.array([[0.0, 0.0, -1.0]]) @ bearer.turn(frame)
     centre = bearer.shape.bounds.mean(axis=0)
-    point = (load.middles[frame] - bearer.middles[frame]) @ bearer.turn(frame) + centre
-    places, _, _ = surface(bearer.shape).mesh.ray.intersects_location(point[None], down)
+    places, _, _ = surface(bearer.shape).mesh.ray.intersects_location((point + centre)[None], down)
     return bool(len(places))
-
-
-def _size(body: BodyGeometry) -> float:
-    """The volume of the box around a body [m3]; 0 without a shape."""
-    return float(np.prod(body.shape.size)) if body.shape else 0.0
 
 
 def seated(
