@@ -40,7 +40,7 @@ class BodyGeometry:
     @cached_property
     def orientations(self) -> Turns:
         """Unit quaternions w x y z, low-passed."""
-        return self.poses.settled.orientations if self.poses.rests else self._smooth[1]
+        return (self.poses.settled if self.poses.rests else self.poses.smooth).orientations
 
     @cached_property
     def middles(self) -> Places:
@@ -48,17 +48,13 @@ class BodyGeometry:
 
         Those of a body that rests are one row, repeated without memory of its own.
         """
-        places = self.poses.settled.positions if self.poses.rests else self._smooth[0]
+        places = (self.poses.settled if self.poses.rests else self.poses.smooth).positions
         if self.shape is None:
             return places
         offset = self.shape.bounds.mean(axis=0)
         frames = slice(0, 1) if self.poses.rests else slice(None)
         middles = places[frames] + self.turns_at(frames) @ offset
         return np.broadcast_to(middles, places.shape)
-
-    @property
-    def _smooth(self) -> tuple[np.ndarray, np.ndarray]:
-        return self.poses.smooth.positions, self.poses.smooth.orientations
 
     def turns_at(self, frames: Int[np.ndarray, "some"] | slice) -> Float[np.ndarray, "some 3 3"]:
         """Rotation matrices from the body's axes to the world's; made again, being large."""

@@ -132,6 +132,9 @@ DAMPING, BOUNCE = 2.0, 0.4
 LATE_DAMPING = 40.0
 """The largest that is tried [1/s]."""
 
+LEVEL, HEIGHT = slice(0, 2), slice(2, 3)
+"""Axes of the world."""
+
 GRID = 11
 """Values that are tried before the best is refined [1]."""
 
@@ -173,7 +176,8 @@ def fit_free_motion(
     known = ~np.isnan(places[:, 0])
     if known.sum() < FEWEST:
         return None
-    clock, path = _thinned(times[known], places[known])
+    step = max(1, -(-int(known.sum()) // MOST))
+    clock, path = times[known][::step], places[known][::step]
     level = _level(clock, path, rested, half, surfaces)
     if level is None:
         begin, damping = _flight(clock, path, half, surfaces), None
@@ -240,20 +244,20 @@ class _Course:
         for _ in range(1 if damping else 2):
             motion = self.motion(late, bounce)
             if _lands(motion):
-                bounce = _least(partial(self._miss_of_bounce, late), 0.0, 1.0)
+                # By heights, which damping does not change.
+                bounce = _least(partial(self._miss, HEIGHT, late), 0.0, 1.0)
             if damping is None and _slid_s(motion, self.times) >= SLIDES_S:
-                value = _least(partial(self._miss_of_damping, bounce), 0.0, LATE_DAMPING)
+                value = _least(
+                    lambda both, bounce=bounce: self._miss(LEVEL, (both, both), bounce),
+                    0.0,
+                    LATE_DAMPING,
+                )
                 late = value, value
         return late, bounce
 
-    def _miss_of_bounce(self, damping: tuple[float, float], bounce: float) -> float:
-        """Mean square distance of heights, which damping does not change [m^2]."""
-        off = self.motion(damping, bounce).positions[:, 2] - self.places[:, 2]
-        return float(np.mean(off**2))
-
-    def _miss_of_damping(self, bounce: float, damping: float) -> float:
-        """Mean square distance on the level [m^2]."""
-        off = self.motion((damping, damping), bounce).positions[:, :2] - self.places[:, :2]
+    def _miss(self, axes: slice, damping: tuple[float, float], bounce: float) -> float:
+        """Mean square distance along some axes [m^2]."""
+        off = self.motion(damping, bounce).positions[:, axes] - self.places[:, axes]
         return float(np.mean(off**2))
 
 
@@ -361,13 +365,6 @@ def _slid_s(motion: FreeMotion, times: Series) -> float:
     return sum(span for phase, span in spans if phase is Phase.SLIDES)
 
 
-def _thinned(
-    times: Series, places: Places
-) -> tuple[Float[np.ndarray, "some"], Float[np.ndarray, "some 3"]]:
-    step = max(1, -(-len(times) // MOST))
-    return times[::step], places[::step]
-
-
 GOES_MPS = 0.25
 """A thing that leaves a hand more slowly was put down [m/s]."""
 
@@ -430,8 +427,10 @@ def _style(
     thing = bodies.objects[contact.other]
     rested = _rested(thing, contact, times)
     first = contact.first if rested is not None else contact.last
-    last = _last_alone(contact, others, len(times))
-    if thing.shape is None or last is None or times[last] - times[first] < VELOCITY_S:
+    # Until it is touched again; not where others touch it still.
+    last = min((c.first for c in others if c.first > contact.last), default=len(times)) - 1
+    still = any(c is not contact and c.first <= contact.last < c.last for c in others)
+    if thing.shape is None or still or times[last] - times[first] < VELOCITY_S:
         return None
     span = slice(first, last + 1)
     places = recorded_middles(thing, span)
@@ -445,13 +444,6 @@ def _style(
     if np.linalg.norm(found.velocity) < GOES_MPS:
         return None
     return _stated(capture, bodies, times, contact, found, span, rested is not None)
-
-
-def _last_alone(contact: Touching, others: list[Touching], frames: int) -> int | None:
-    """The last frame before a thing is touched again; None where others touch it still."""
-    if any(c is not contact and c.first <= contact.last < c.last for c in others):
-        return None
-    return min((c.first for c in others if c.first > contact.last), default=frames) - 1
 
 
 def _gone(times: Series, places: Places) -> float | None:
@@ -474,7 +466,11 @@ def _stated(
     struck: bool,
 ) -> ForceStyle:
     thing = capture.tag_object(contact.other)
-    before, after = _striker(bodies.sensors[contact.body], times, found.start_s)
+    # The striker's velocities just before and just after.
+    about = [found.start_s - VELOCITY_S, found.start_s + VELOCITY_S]
+    near = slice(*map(int, np.searchsorted(times, about)))
+    middles = recorded_middles(bodies.sensors[contact.body], near)
+    before, after = velocities_about(times[near], middles, found.start_s)
     mass, clock = thing.mass_kg, times[span]
     slides = _sliding(found, clock)
     return ForceStyle(
@@ -494,13 +490,6 @@ def _stated(
         impulse_ns=None if mass is None else _vector(mass * found.velocity),
         residual_m=found.residual_m,
     )
-
-
-def _striker(body: BodyGeometry, times: Series, at_s: float) -> tuple[Vector, Vector]:
-    """The velocities of an end-effector just before and just after a time [m/s]."""
-    first, last = np.searchsorted(times, [at_s - VELOCITY_S, at_s + VELOCITY_S])
-    span = slice(int(first), int(last))
-    return velocities_about(times[span], recorded_middles(body, span), at_s)
 
 
 def _rested(thing: BodyGeometry, contact: Touching, times: Series) -> Vector | None:
@@ -544,12 +533,8 @@ def _surfaces(capture: Capture, bodies: Bodies) -> list[Surface]:
         if thing.tag is TagType.FIXED and thing.shape is not None:
             body = bodies.objects[thing.name]
             middle, extent = np.nanmedian(body.middles, axis=0), _extent(body, 0)
-            low, high = middle - 0.5 * extent, middle + 0.5 * extent
-            out.append(
-                Surface(
-                    float(high[2]), (float(low[0]), float(low[1])), (float(high[0]), float(high[1]))
-                )
-            )
+            low, high = _vector(middle - 0.5 * extent), _vector(middle + 0.5 * extent)
+            out.append(Surface(high[2], low[:2], high[:2]))
     ground = min([0.0, *(surface.top_m for surface in out)])
     return [*out, Surface(ground)]
 

@@ -105,9 +105,13 @@ def free_motion(
     passed: tuple[Surface, ...] = ()
     for _ in range(MOST_PHASES):
         reached = [surface for surface in surfaces if surface not in passed]
-        _land_on(state, half, reached, resistance)
+        for surface in reached:
+            # It is there already, on its way down.
+            if abs(state[2] - half[2] - surface.top_m) < 1e-6 and state[5] < 0.0:
+                _land(state, half, surface, resistance)
         bearing = _bearing(state, half, reached)
-        phase = _phase(state, bearing)
+        fast = np.hypot(state[3], state[4]) > REST_MPS
+        phase = Phase.FALLS if bearing is None else Phase.SLIDES if fast else Phase.RESTS
         if not phases or phases[-1][1] is not phase:
             phases.append((now, phase))
         at = times >= now
@@ -121,7 +125,8 @@ def free_motion(
             landings: list[Surface] = []
         else:
             landings = [s for s in reached if s.top_m < state[2] - half[2] + 1e-9]
-            slope, events = _falling, [_landing(surface, half) for surface in landings]
+            slope = _falling
+            events = [_landing(surface, half) for surface in landings]
         solved = solve_ivp(
             slope, (now, end), state, events=events, rtol=TOLERANCE, atol=TOLERANCE,
             dense_output=True, method="RK45",
@@ -159,37 +164,17 @@ def _bearing(state: State, half: Vector, surfaces: Sequence[Surface]) -> Surface
     return None
 
 
-def _land_on(
-    state: State, half: Vector, surfaces: Sequence[Surface], resistance: Resistance
-) -> None:
-    for surface in surfaces:
-        if _hits(state, half, surface):
-            _land(state, half, surface, resistance)
-
-
-def _hits(state: State, half: Vector, surface: Surface) -> bool:
-    """Whether the thing is at a surface already, on its way down."""
-    at = abs(state[2] - half[2] - surface.top_m) < 1e-6
-    return bool(at and state[5] < 0.0 and _above(state, half, surface))
-
-
 def _above(state: State, half: Vector, surface: Surface) -> bool:
     low, high = state[:2] - half[:2], state[:2] + half[:2]
     return bool((high > np.array(surface.low)).all() and (low < np.array(surface.high)).all())
 
 
-def _phase(state: State, bearing: Surface | None) -> Phase:
-    if bearing is None:
-        return Phase.FALLS
-    return Phase.SLIDES if np.hypot(state[3], state[4]) > REST_MPS else Phase.RESTS
+Slope = Callable[[float, State], State]
+Event = Callable[[float, State], float]
 
 
 def _falling(_: float, state: State) -> State:
     return np.concatenate([state[3:], [0.0, 0.0, -GRAVITY_MPS2]])
-
-
-Slope = Callable[[float, State], State]
-Event = Callable[[float, State], float]
 
 
 def _sliding(resistance: Resistance) -> Slope:

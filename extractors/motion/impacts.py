@@ -54,8 +54,7 @@ def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
     recorded, clock = recorded_middles(body, span) - recorded_middles(other, span), times[span]
     ends = range(_before(times, frame, LATE_S), frame + 1)
     spans = (slice(_before(times, end, SWING_S) - begin, end + 1 - begin) for end in ends)
-    slopes = (_speed_at_end(recorded[each], clock[each]) for each in spans)
-    return max(float(speeds.max()), *slopes)
+    return max(float(speeds.max()), *(_speed_at_end(recorded[s], clock[s]) for s in spans))
 
 
 def _before(times: Series, frame: int, span_s: float) -> int:

@@ -167,13 +167,12 @@ def moving(
         if first > 0 and last < len(stream.times) - 1 and _moved(stream, first, last, floor):
             away[first : last + 1] = True
     changes = _changes(rests, floor)
-    lasting = set(
-        intervals(away, stream.times, dropout_s=0.0, minimum_s=thresholds.moving_minimum_s)
-    )
+    least_s = thresholds.moving_minimum_s
+    lasting = set(intervals(away, stream.times, dropout_s=0.0, minimum_s=least_s))
     return tuple(
-        each
-        for each in geometry.runs(away)
-        if each in lasting or any(_meet(each, change) for change in changes)
+        (first, last)
+        for first, last in geometry.runs(away)
+        if (first, last) in lasting or any(a <= last and first <= z for a, z in changes)
     )
 
 
@@ -191,27 +190,15 @@ def _changes(rests: tuple[RestPose, ...], floor: Floor) -> list[Interval]:
     return out
 
 
-def _meet(one: Interval, other: Interval) -> bool:
-    return one[0] <= other[1] and other[0] <= one[1]
-
-
 def slow_frames(stream: Stream, noise: Noise, rate_hz: float, thresholds: Thresholds) -> Holds:
     """Whether the way's slope over the window of rest is no more than noise makes it."""
-    speed_mps, turning_radps = pace_at_rest(noise, rate_hz, thresholds)
-    speed, turning = paces(stream, rate_hz, thresholds)
-    with np.errstate(invalid="ignore"):
-        return np.asarray((speed < speed_mps) & (turning < turning_radps))
-
-
-def pace_at_rest(noise: Noise, rate_hz: float, thresholds: Thresholds) -> tuple[float, float]:
-    """Below which speed [m/s] and turning [rad/s] a body may be at rest."""
     half = _half_window(rate_hz, thresholds)
     # Least squares over n samples: by sigma sqrt(12 / n^3) a step the slope deviates on each axis.
     left = thresholds.rest_sigmas * rate_hz * float(np.sqrt(12.0 / (2 * half + 1) ** 3))
-    return (
-        max(thresholds.rest_speed_mps, left * noise.position_m),
-        max(thresholds.rest_speed_radps, left * noise.orientation_rad),
-    )
+    speed, turning = paces(stream, rate_hz, thresholds)
+    with np.errstate(invalid="ignore"):
+        slow = speed < max(thresholds.rest_speed_mps, left * noise.position_m)
+        return slow & (turning < max(thresholds.rest_speed_radps, left * noise.orientation_rad))
 
 
 def paces(stream: Stream, rate_hz: float, thresholds: Thresholds) -> tuple[Series, Series]:
@@ -220,20 +207,16 @@ def paces(stream: Stream, rate_hz: float, thresholds: Thresholds) -> tuple[Serie
     speed, turning = np.full(len(stream.times), np.nan), np.full(len(stream.times), np.nan)
     for first, last in geometry.runs(~stream.lost):
         part = slice(first, last + 1)
-        speed[part] = _pace(stream.positions[part], half) * rate_hz
+        speed[part] = np.linalg.norm(slopes(stream.positions[part], half), axis=1) * rate_hz
         # A quaternion changes by half of the angle.
-        turning[part] = 2.0 * _pace(stream.orientations[part], half) * rate_hz
+        turn = np.linalg.norm(slopes(stream.orientations[part], half), axis=1)
+        turning[part] = 2.0 * turn * rate_hz
     return speed, turning
 
 
 def _half_window(rate_hz: float, thresholds: Thresholds) -> int:
     """Half the window of rest [frames]."""
     return max(1, round(0.5 * thresholds.rest_window_s * rate_hz))
-
-
-def _pace(positions: Float[np.ndarray, "frames axes"], half: int) -> Series:
-    """Length of that slope, a frame."""
-    return np.asarray(np.linalg.norm(slopes(positions, half), axis=1))
 
 
 def slopes(
@@ -261,21 +244,21 @@ def _stay(streams: tuple[Stream, Stream], seed: Interval, floor: Floor, begins: 
     stay = RestPose(
         seed, *median_pose(stream, slice(first, last + 1)), last + 1 - first, missing=missing
     )
-    gone = partial(_gone, stream, stay, floor)
-    middle = _middle(~gone(slice(first, last + 1)), seed)
+
+    def gone(frames: slice, place: RestPose = stay) -> Bool[np.ndarray, "some"]:
+        return ~rests_at(stream, frames, place, floor)
+
+    inside, centre = np.flatnonzero(~gone(slice(first, last + 1))), (last - first) // 2
+    middle = first + int(inside[np.argmin(np.abs(inside - centre))] if inside.size else centre)
     before, after = last_where(gone, middle - 1), first_where(gone, middle + 1, len(stream.times))
     end = len(stream.times) - 1 if after is None else after - 1
     if before is not None and before >= first:
         return replace(stay, interval=(before + 1, end))
     soon = min(first + begins, last + 1)
     came = RestPose(seed, *median_pose(recorded, slice(first, soon)), soon - first)
-    before = last_where(partial(_gone, stream, came, floor), (first + soon) // 2 - 1)
+    before = last_where(partial(gone, place=came), (first + soon) // 2 - 1)
     span = 0 if before is None else before + 1, end
     return replace(stay, interval=span, came=replace(came, interval=span))
-
-
-def _gone(stream: Stream, stay: RestPose, floor: Floor, frames: slice) -> Bool[np.ndarray, "some"]:
-    return ~rests_at(stream, frames, stay, floor)
 
 
 def rests_at(
@@ -286,14 +269,6 @@ def rests_at(
     angle = geometry.angle_between(stream.orientations[frames], stay.orientation[None])
     with np.errstate(invalid="ignore"):
         return np.asarray((distance <= floor.position_m) & (angle <= floor.rotation_rad))
-
-
-def _middle(there: Bool[np.ndarray, "some"], seed: Interval) -> int:
-    """A frame of the seed at which the object is at its place, the nearest to its middle."""
-    first, last = seed
-    inside = np.flatnonzero(there)
-    centre = (last - first) // 2
-    return first + int(inside[np.argmin(np.abs(inside - centre))] if inside.size else centre)
 
 
 def _moved(stream: Stream, first: int, last: int, floor: Floor) -> bool:

@@ -1,7 +1,7 @@
 """Phases of a motion: rising, level, sinking, turning, rolling, leaning, reversing, lengthwise."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -49,8 +49,7 @@ def phases(
     for motion in motions:
         for first, last in geometry.runs(~stream.lost[motion[0] : motion[1] + 1]):
             span = slice(motion[0] + first, motion[0] + last + 1)
-            parts = _parts(body, span, rate_hz, thresholds)
-            found += _joined(parts, body.middles, thresholds)
+            found += _joined(_parts(body, span, rate_hz, thresholds), body.middles, thresholds)
     return tuple(found)
 
 
@@ -73,18 +72,13 @@ def turns_of_height(
     after_top = False
     between: list[Phase] = []
     for phase in found:
-        if abs(
-            float(middles[phase.last, 2] - middles[phase.first, 2])
-        ) < thresholds.reversal_m or phase.kind not in (RISING, SINKING):
+        rise_m = abs(float(middles[phase.last, 2] - middles[phase.first, 2]))
+        if rise_m < thresholds.reversal_m or phase.kind not in (RISING, SINKING):
             between.append(phase)
             continue
         if before is not None and any(before.first < frame < phase.first for frame in met):
             before, after_top = None, False
-        if (
-            before is not None
-            and before.kind != phase.kind
-            and (before.kind == RISING or after_top)
-        ):
+        if before and before.kind != phase.kind and (before.kind == RISING or after_top):
             frames += _turn(before, between, phase, middles)
             after_top = True
         before, between = phase, []
@@ -158,7 +152,17 @@ def _joined(parts: list[Phase], middles: Places, thresholds: Thresholds) -> list
         place = int(np.argmin(ways))
         if ways[place] >= thresholds.motion_floor_m:
             break
-        _give_up(out, place)
+        gone = out.pop(place)
+        middle = (gone.first + gone.last) // 2
+        if place == 0:
+            out[0] = replace(out[0], first=gone.first)
+        elif place == len(out):
+            out[-1] = replace(out[-1], last=gone.last)
+        elif out[place - 1].kind == out[place].kind:
+            out[place - 1] = replace(out[place - 1], last=out.pop(place).last)
+        else:
+            out[place - 1] = replace(out[place - 1], last=middle)
+            out[place] = replace(out[place], first=middle)
     return out
 
 
@@ -167,21 +171,6 @@ def _way(phase: Phase, middles: Places) -> float:
     if phase.kind in (TURNING, STILL):
         return float("inf")
     return float(np.linalg.norm(middles[phase.last] - middles[phase.first]))
-
-
-def _give_up(out: list[Phase], place: int) -> None:
-    gone = out.pop(place)
-    middle = (gone.first + gone.last) // 2
-    if place == 0:
-        out[0] = Phase(out[0].kind, gone.first, out[0].last)
-    elif place == len(out):
-        out[-1] = Phase(out[-1].kind, out[-1].first, gone.last)
-    elif out[place - 1].kind == out[place].kind:
-        after = out.pop(place)
-        out[place - 1] = Phase(after.kind, out[place - 1].first, after.last)
-    else:
-        out[place - 1] = Phase(out[place - 1].kind, out[place - 1].first, middle)
-        out[place] = Phase(out[place].kind, middle, out[place].last)
 
 
 def rolling(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:
@@ -199,13 +188,23 @@ def rolling(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:
     turns = angular_velocity(stream.orientations, stream.times)
     arm = np.zeros_like(goes)
     arm[:, 2] = body.boxes[0][:, 2] - body.middles[:, 2]
+    pace = np.linalg.norm(goes, axis=1)
+    slip = np.linalg.norm(goes + np.cross(turns, arm), axis=1)
+    level = np.linalg.norm(turns[:, :2], axis=1)
+    with np.errstate(invalid="ignore"):
+        # The middle goes, the axis lies, and the point below the middle stays behind.
+        holds = (pace > thresholds.rest_speed_mps) & (slip <= thresholds.slip_share * pace)
+        holds &= np.abs(turns[:, 2]) <= level
     found = intervals(
-        _holds(goes, turns, arm, thresholds),
+        holds,
         stream.times,
         dropout_s=thresholds.dropout_s,
         minimum_s=thresholds.contact_minimum_s,
     )
-    angle = _turned(turns, stream.times)
+    # What is not known adds nothing to the angle turned so far.
+    rate = np.nan_to_num(np.linalg.norm(turns, axis=1))
+    steps = 0.5 * (rate[1:] + rate[:-1]) * np.diff(stream.times)
+    angle = np.concatenate(([0.0], np.cumsum(steps)))
     return tuple(
         (first, last) for first, last in found if angle[last] - angle[first] >= thresholds.roll_rad
     )
@@ -222,26 +221,6 @@ def angular_velocity(orientations: Turns, times: Series) -> Places:
     out /= (times[after] - times[before])[:, None]
     out[lost] = np.nan
     return np.asarray(out)
-
-
-def _holds(goes: Places, turns: Places, arm: Places, thresholds: Thresholds) -> Holds:
-    """Whether the middle goes, the axis lies, and the point below the middle stays behind."""
-    speed = np.linalg.norm(goes, axis=1)
-    slip = np.linalg.norm(goes + np.cross(turns, arm), axis=1)
-    level = np.linalg.norm(turns[:, :2], axis=1)
-    with np.errstate(invalid="ignore"):
-        return np.asarray(
-            (speed > thresholds.rest_speed_mps)
-            & (slip <= thresholds.slip_share * speed)
-            & (np.abs(turns[:, 2]) <= level)
-        )
-
-
-def _turned(turns: Places, times: Series) -> Series:
-    """Angle turned so far [rad]; what is not known adds nothing."""
-    rate = np.nan_to_num(np.linalg.norm(turns, axis=1))
-    steps = 0.5 * (rate[1:] + rate[:-1]) * np.diff(times)
-    return np.concatenate(([0.0], np.cumsum(steps)))
 
 
 def leaning(
@@ -346,7 +325,16 @@ def lengthwise(
     if axis is None:
         return ()
     least = thresholds.lengthwise_share
-    return tuple(span for span in swinging if _share_along(body, axis, span) >= least)
+    out = []
+    for first, last in swinging:
+        part = slice(first, last + 1)
+        steps = np.diff(body.poses.smooth.positions[part], axis=0)
+        lengths = (body.turns_at(part) @ axis)[:-1]
+        way = np.nansum(np.linalg.norm(steps, axis=1))
+        along = np.nansum(np.abs(np.einsum("ij,ij->i", steps, lengths)))
+        if way > 0.0 and along / way >= least:
+            out.append((first, last))
+    return tuple(out)
 
 
 def long_axis(body: BodyGeometry, thresholds: Thresholds) -> Vector | None:
@@ -363,16 +351,6 @@ def long_axis(body: BodyGeometry, thresholds: Thresholds) -> Vector | None:
     across = points - np.outer(along, axes[0])
     wide = np.linalg.norm(across[:, None] - across[None], axis=2).max()
     return axes[0] if np.ptp(along) >= thresholds.slender_ratio * wide else None
-
-
-def _share_along(body: BodyGeometry, axis: Vector, span: Interval) -> float:
-    """Which share of its origin's path is along its own axis [1]; lost frames count nothing."""
-    part = slice(span[0], span[1] + 1)
-    steps = np.diff(body.poses.smooth.positions[part], axis=0)
-    lengths = (body.turns_at(part) @ axis)[:-1]
-    way = np.nansum(np.linalg.norm(steps, axis=1))
-    along = np.nansum(np.abs(np.einsum("ij,ij->i", steps, lengths)))
-    return float(along / way) if way > 0.0 else 0.0
 
 
 def turning_points(values: Series, least: float) -> Int[np.ndarray, "turns"]:
@@ -430,12 +408,18 @@ def swings(
     """
     stream = poses.smooth
     chains: list[Interval] = []
-    for first, last in _known(stream, moving):
+    known = [
+        (first + begin, first + end)
+        for first, last in moving
+        for begin, end in geometry.runs(~stream.lost[first : last + 1])
+    ]
+    for first, last in known:
         part = stream.positions[first : last + 1]
         for axis in range(3):
             turns = first + turning_points(part[:, axis], thresholds.swing_m)
             for chain in _chains(turns, stream.times, thresholds):
-                if _outweighs(chain, stream, axis):
+                way = np.linalg.norm(stream.positions[chain[-1]] - stream.positions[chain[0]])
+                if np.abs(np.diff(stream.positions[chain, axis])).sum() > way:
                     chains.append(_whole(chain, (first, last), stream, axis, thresholds))
     out: list[Interval] = []
     for first, last in sorted(chains):
@@ -468,13 +452,6 @@ def most_turns(
     return axis, found[axis]
 
 
-def _known(stream: Stream, moving: tuple[Interval, ...]) -> Iterator[Interval]:
-    """The parts of the motions in which the body was not lost."""
-    for first, last in moving:
-        for begin, end in geometry.runs(~stream.lost[first : last + 1]):
-            yield first + begin, first + end
-
-
 def _chains(
     turns: Int[np.ndarray, "turns"], times: Series, thresholds: Thresholds
 ) -> list[Int[np.ndarray, "turns"]]:
@@ -483,12 +460,6 @@ def _chains(
     breaks = np.flatnonzero(np.diff(times[turns]) > thresholds.swing_s) + 1
     groups = np.split(turns, breaks)
     return [each for each in groups if len(each) >= thresholds.swing_turns]
-
-
-def _outweighs(turns: Int[np.ndarray, "turns"], stream: Stream, axis: int) -> bool:
-    """Whether the strokes add up to more than the way from the first turn to the last."""
-    way = np.linalg.norm(stream.positions[turns[-1]] - stream.positions[turns[0]])
-    return bool(np.abs(np.diff(stream.positions[turns, axis])).sum() > way)
 
 
 def _whole(

@@ -18,18 +18,13 @@ _KEPT: dict[int, tuple["ref[np.ndarray]", float]] = {}
 
 def time_step(times: Series) -> float:
     """The median step of a clock [s]."""
-    if times.flags.writeable:
-        return _median_step(times)
     key = id(times)
     clock, step = _KEPT.get(key, (None, 0.0))
     if clock is None or clock() is not times:
-        step = _median_step(times)
-        _KEPT[key] = ref(times, lambda _: _KEPT.pop(key, None)), step
+        step = round(float(np.median(np.diff(times))), DECIMALS)
+        if not times.flags.writeable:
+            _KEPT[key] = ref(times, lambda _: _KEPT.pop(key, None)), step
     return step
-
-
-def _median_step(times: Series) -> float:
-    return round(float(np.median(np.diff(times))), DECIMALS)
 
 
 def frame_rate(times: Series) -> float:
@@ -47,21 +42,16 @@ NEAREST = 64
 """How many frames are asked about at first when one is looked for; each further time twice."""
 
 
-def intervals(
-    holds: Holds, times: Series, *, dropout_s: float, minimum_s: float, known: Holds | None = None
-) -> list[Interval]:
+def intervals(holds: Holds, times: Series, *, dropout_s: float, minimum_s: float) -> list[Interval]:
     """Where something holds, with short interruptions closed, then short stretches dropped.
 
     ``holds``: whether it holds at each frame. ``dropout_s``: an interruption shorter than this is
     closed [s]. ``minimum_s``: A stretch shorter than this is dropped [s]; a stretch of one frame
     lasts one step of time.
     """
-    seen = holds if known is None else holds & known
-    if not seen.any():
-        return []
     step = time_step(times)
     closed: list[Interval] = []
-    for first, last in geometry.runs(seen):
+    for first, last in geometry.runs(holds):
         if closed and times[first] - times[closed[-1][1]] - step < dropout_s - 1e-9:
             closed[-1] = (closed[-1][0], last)
         else:

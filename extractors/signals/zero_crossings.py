@@ -42,8 +42,12 @@ def zero_crossings(
         resting = rests(speed_mps, times, noise_mps=noise_mps, thresholds=thresholds)
         for first, last in geometry.runs(known):
             part = slice(first, last + 1)
-            turns = _extrema(speed_mps[part], prominence, resting[part], reach)
-            found.update(first + each for each in turns)
+            # Prominent maxima and minima outside rest, and the ends of rest.
+            for signal in (speed_mps[part], -speed_mps[part]):
+                peaks = first + prominent_peaks(signal, prominence, reach)
+                found.update(int(each) for each in peaks if not resting[each])
+            for begin, end in geometry.runs(resting[part]):
+                found.update(first + each for each in {begin, end} - {0, last - first})
     return np.array(sorted(found), dtype=np.int64)
 
 
@@ -65,20 +69,13 @@ def pauses(
     """
     if len(crossings) < 3:
         return crossings[:0]
-    here, before, after = (speed_mps[crossings[each]] for each in (_INNER, _EARLIER, _LATER))
+    before, here, after = (speed_mps[at] for at in (crossings[:-2], crossings[1:-1], crossings[2:]))
     near = np.diff(crossings) <= reach
-    top = _local_maxima(speed_mps)[crossings[1:-1]]
+    # Whether each is faster than the frame before and no slower than the one after.
+    rises = np.diff(speed_mps) > 0.0
+    top = rises[crossings[1:-1] - 1] & ~rises[crossings[1:-1]]
     highest = np.where(near[:-1], here > before, top) & np.where(near[1:], here > after, top)
     return crossings[1:-1][~highest]
-
-
-def _local_maxima(speed_mps: Series) -> Holds:
-    """Whether each frame is faster than the one before and no slower than the one after."""
-    rises = np.diff(speed_mps) > 0.0
-    return np.concatenate(([False], rises[:-1] & ~rises[1:], [False]))
-
-
-_INNER, _EARLIER, _LATER = slice(1, -1), slice(None, -2), slice(2, None)
 
 
 def rests(speed_mps: Series, times: Series, *, noise_mps: float, thresholds: Thresholds) -> Holds:
@@ -92,8 +89,15 @@ def rests(speed_mps: Series, times: Series, *, noise_mps: float, thresholds: Thr
     out = np.zeros(len(speed_mps), dtype=bool)
     step = time_step(times)
     for first, last in intervals(slow, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
-        begin, end = _trimmed(speed_mps, first, last, horizon_frames(times, thresholds))
-        if duration((begin, end), times, step) < thresholds.rest_minimum_s:
+        # From the first to the last local minimum of speed near its ends.
+        begin, end, reach = first, last, horizon_frames(times, thresholds)
+        if first > 0:
+            while begin < min(last, first + reach) and speed_mps[begin + 1] < speed_mps[begin]:
+                begin += 1
+        if last < len(speed_mps) - 1:
+            while end > max(first, last - reach) and speed_mps[end - 1] < speed_mps[end]:
+                end -= 1
+        if begin > end or duration((begin, end), times, step) < thresholds.rest_minimum_s:
             begin, end = first, last
         out[begin : end + 1] = True
     return out
@@ -113,29 +117,6 @@ def _to_the_ends(slow: Holds, speed_mps: Series, times: Series, thresholds: Thre
         if inside.size and last - inside[-1] <= reach:
             out[inside[-1] : last + 1] = True
     return out
-
-
-def _trimmed(speed_mps: Series, first: int, last: int, reach: int) -> tuple[int, int]:
-    """The stretch between the first and the last local minimum of speed near its ends."""
-    begin, end = first, last
-    if first > 0:
-        while begin < min(last, first + reach) and speed_mps[begin + 1] < speed_mps[begin]:
-            begin += 1
-    if last < len(speed_mps) - 1:
-        while end > max(first, last - reach) and speed_mps[end - 1] < speed_mps[end]:
-            end -= 1
-    return (begin, end) if begin <= end else (first, last)
-
-
-def _extrema(speed: Series, prominence: float, resting: Holds, reach: int) -> set[int]:
-    """Prominent maxima and minima outside rest, and the ends of rest."""
-    found: set[int] = set()
-    for signal in (speed, -speed):
-        peaks = prominent_peaks(signal, prominence, reach)
-        found.update(int(each) for each in peaks if not resting[each])
-    for first, last in geometry.runs(resting):
-        found.update({first, last} - {0, len(speed) - 1})
-    return found
 
 
 def prominent_peaks(signal: Series, prominence: float, reach: int) -> Int[np.ndarray, "peaks"]:
