@@ -56,11 +56,7 @@ class Correction:
     """Whether it is one with the next segment."""
 
     def __post_init__(self) -> None:
-        """Check that it is one change.
-
-        Raises:
-            CorrectionError: It is none or several, or the name is no name of an action.
-        """
+        """Check that it is one change."""
         times = (self.start_s, self.end_s, self.split_s)
         if bool(self.name) + self.join + sum(each is not None for each in times) != 1:
             raise CorrectionError("say one change: a name, a start, an end, a split or a join")

@@ -59,11 +59,7 @@ class _Closed(type):
     """A class whose attributes are the terms that the ontology's files state."""
 
     def __getattr__(cls, name: str) -> NamedNode:
-        """The term of that name.
-
-        Raises:
-            UnknownNameError: The ontology has no such term.
-        """
+        """The term of that name."""
         if name.startswith("__"):
             raise AttributeError(name)
         if name not in terms():

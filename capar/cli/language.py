@@ -280,7 +280,6 @@ class Format(StrEnum):
     HTML = "html"
     CSV = "csv"
     JSON = "json"
-    LATEX = "latex"
     SVG = "svg"
 
 

@@ -32,16 +32,13 @@ def _past_forms() -> dict[str, str]:
 def past(verb: str) -> str:
     """The simple past of a verb, of which the first word is inflected: ``let go``."""
     head, _, rest = verb.partition(" ")
-    form = _past_forms().get(head) or _regular(head)
+    regular = f"{head}ed"
+    if head.endswith("e"):
+        regular = f"{head}d"
+    elif head.endswith("y") and head[-2:-1] not in "aeiou":
+        regular = f"{head[:-1]}ied"
+    form = _past_forms().get(head, regular)
     return f"{form} {rest}" if rest else form
-
-
-def _regular(verb: str) -> str:
-    if verb.endswith("e"):
-        return f"{verb}d"
-    if verb.endswith("y") and verb[-2:-1] not in "aeiou":
-        return f"{verb[:-1]}ied"
-    return f"{verb}ed"
 
 
 def noun(name: str) -> str:
@@ -156,23 +153,21 @@ def lemmas(word: str, known: Callable[[str], bool]) -> tuple[tuple[str, Form], .
         word: In lower case.
         known: Whether there is a verb.
     """
-    found = dict.fromkeys(each for each in _candidates(word) if known(each[0]))
-    return tuple(found)
-
-
-def _candidates(word: str) -> Iterator[tuple[str, Form]]:
-    yield word, Form.BASE
-    yield from _irregular().get(word, ())
+    found = [(word, Form.BASE)]
+    for row in table("past_forms"):
+        found += [(row["verb"], Form.PAST)] if row["past"] == word else []
+        found += [(row["verb"], Form.PARTICIPLE)] if row["participle"] == word else []
     if word.endswith("ing"):
-        yield from ((each, Form.GERUND) for each in _stems(word[:-3]))
+        found += ((each, Form.GERUND) for each in _stems(word[:-3]))
     if word.endswith("ed"):
         for form in (Form.PAST, Form.PARTICIPLE):
-            yield from ((each, form) for each in _stems(word[:-2]))
+            found += ((each, form) for each in _stems(word[:-2]))
     if word.endswith("s"):
         stems = (word[:-1], word[:-2] if word.endswith("es") else "")
-        yield from ((each, Form.THIRD) for each in stems if each)
+        found += ((each, Form.THIRD) for each in stems if each)
         if word.endswith("ies"):
-            yield f"{word[:-3]}y", Form.THIRD
+            found.append((f"{word[:-3]}y", Form.THIRD))
+    return tuple(dict.fromkeys(each for each in found if known(each[0])))
 
 
 def _stems(stem: str) -> Iterator[str]:
@@ -182,12 +177,3 @@ def _stems(stem: str) -> Iterator[str]:
         yield stem[:-1]
     if stem.endswith("i"):
         yield f"{stem[:-1]}y"
-
-
-@cache
-def _irregular() -> dict[str, tuple[tuple[str, Form], ...]]:
-    found: dict[str, list[tuple[str, Form]]] = {}
-    for row in table("past_forms"):
-        found.setdefault(row["past"], []).append((row["verb"], Form.PAST))
-        found.setdefault(row["participle"], []).append((row["verb"], Form.PARTICIPLE))
-    return {word: tuple(each) for word, each in found.items()}

@@ -1,6 +1,4 @@
-"""A complex action drawn: as text, as a picture in SVG, and as Turtle."""
-
-from html import escape
+"""A complex action as text and as Turtle."""
 
 from pyoxigraph import RdfFormat
 
@@ -8,15 +6,9 @@ from capar.model.par import ComplexPar, Step
 from kb.encode.pars import COMMON
 from kb.exchange import part
 from kb.lookup.pars import Pars, observations_of
-from kb.reports import formats as svg
 from kb.store import names
 from kb.store.answers import turtle
 from ontology import CAPAR
-
-WIDTH, ROW, LEFT, TOP = 900, 46, 130, 40
-"""The picture's measures: whole width, height of a link, and margins [px]."""
-
-COLOURS = ("#4e79a7", "#f28e2b", "#59a14f", "#e15759", "#76b7b2", "#edc948", "#b07aa1", "#9c755f")
 
 
 def as_text(actionary: Pars, name: str) -> str:
@@ -60,39 +52,6 @@ def _rows(value: ComplexPar) -> dict[str, tuple[Step, ...]]:
     return {link.ee: link.steps for link in value.links} | common
 
 
-def as_svg(actionary: Pars, name: str) -> str:
-    """The action's steps as bars over its duration, a row a link."""
-    value = actionary.complex_par(name)
-    actions = sorted({step.action for steps in _rows(value).values() for step in steps})
-    colour = {each: COLOURS[index % len(COLOURS)] for index, each in enumerate(actions)}
-    links = [ee for ee in _rows(value) if ee != COMMON]
-    height, room = TOP + ROW * len(links) + 30, WIDTH - LEFT - 10
-    title = f"{value.name}, {value.duration_s:.2f} s"
-    lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}" '
-        f'viewBox="0 0 {WIDTH} {height}" font-family="sans-serif" font-size="12" role="img">',
-        f"<title>{escape(title)}</title>",
-        svg.text(LEFT, 22, title, font_size=15),
-    ]
-    lines += [svg.text(8, TOP + ROW * row + 22, ee) for row, ee in enumerate(links)]
-    for ee, steps in _rows(value).items():
-        row, rows = (0, len(links)) if ee == COMMON else (links.index(ee), 1)
-        for step in steps:
-            y, tall = TOP + ROW * row, ROW * rows - 8
-            x = f"{LEFT + room * step.begin:.1f}"
-            width = f"{max(room * step.share, 1.0):.1f}"
-            aim = f", to {step.purpose}" if step.purpose else ""
-            about = f"{_call(step)}: {step.share:.3f} of the whole{aim}"
-            fill = colour[step.action]
-            box = svg.rect(x, y, width, tall, radius=3, fill=fill, stroke="white")
-            label = svg.text(4, f"{tall / 2 + 4:.1f}", _call(step), fill="white")
-            lines += [
-                f"<g><title>{escape(about)}</title>{box}",
-                f'<svg x="{x}" y="{y}" width="{width}" height="{tall}">{label}</svg></g>',
-            ]
-    return "\n".join([*lines, "</svg>"]) + "\n"
-
-
 def as_turtle(actionary: Pars, name: str) -> str:
     """The complex action, and its steps as each observation saw them."""
     keep = {CAPAR.enacts, CAPAR.step, CAPAR.name, CAPAR.agent, CAPAR.duration, CAPAR.objects}
@@ -110,5 +69,5 @@ def as_turtle(actionary: Pars, name: str) -> str:
     return turtle(sorted(dict.fromkeys(triples), key=str), form=RdfFormat.TURTLE)
 
 
-FORMATS = {"text": as_text, "svg": as_svg, "turtle": as_turtle}
-"""How an action may be drawn."""
+FORMATS = {"text": as_text, "turtle": as_turtle}
+"""How an action may be written."""

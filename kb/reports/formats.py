@@ -3,7 +3,6 @@
 import csv
 import io
 import json
-import re
 import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
@@ -352,83 +351,12 @@ def as_html(report: LinguisticReport) -> str:
     return template.substitute(title=escape(TITLE), style=style, body=body)
 
 
-_PREAMBLE = r"""\documentclass[a4paper]{article}
-\usepackage[T1]{fontenc}
-\usepackage[utf8]{inputenc}
-\usepackage[landscape,margin=15mm]{geometry}
-\usepackage{array,booktabs,longtable}
-\begin{document}
-\setlength{\LTcapwidth}{\linewidth}
-\footnotesize
-"""
-
-LONGEST_MEAN = 30
-"""A column's mean length counts up to so many characters, so that long texts wrap."""
-
-
-def as_latex(report: LinguisticReport) -> str:
-    """A document of its tables, for any LaTeX with array, booktabs, geometry and longtable."""
-    found = [_latex_table(each) for each in tables(report)]
-    return "\n".join([_PREAMBLE, *found, r"\end{document}", ""])
-
-
-def _latex_table(table: Table) -> str:
-    title, heads, rows = table
-    caption = f"{title}. {NOTES[title]}" if title in NOTES else title
-    columns = "".join(
-        rf">{{\raggedright\arraybackslash}}p{{\dimexpr{share:.3f}\linewidth-2\tabcolsep}}"
-        for share in _shares(heads, rows)
-    )
-    head = [r"\toprule", " & ".join(map(_latex, heads)) + r" \\", r"\midrule"]
-    return "\n".join(
-        [
-            rf"\begin{{longtable}}{{{columns}}}",
-            rf"\caption{{{_latex(caption)}}}\\",
-            *head,
-            r"\endfirsthead",
-            *head,
-            r"\endhead",
-            *(" & ".join(map(_latex, row)) + r" \\" for row in rows),
-            r"\bottomrule",
-            r"\end{longtable}",
-            "",
-        ]
-    )
-
-
-def _shares(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[float]:
-    """The width of each column as a share of the line: by its longest word and its mean length."""
-    widths = []
-    for head, *cells in zip(heads, *rows, strict=True):
-        words = [word for cell in (head, *cells) for word in _BREAK.sub(r"\1 ", cell).split()]
-        mean = sum(map(len, cells)) / max(len(cells), 1)
-        widths.append(max(*map(len, words), min(mean, LONGEST_MEAN)) + 2)
-    return [int(1000 * width / sum(widths)) / 1000 for width in widths]
-
-
-_BREAK = re.compile(r"([/_]|[a-z](?=[A-Z][a-z]))")
-"""After these a line may end: in paths, and between the words of a name."""
-
-_LATEX = str.maketrans(
-    {each: rf"\{each}" for each in "&%$#_{}"}
-    | {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
-    | {"“": "``", "”": "''", "–": "--"}
-)
-
-
-def _latex(text: str) -> str:
-    """The text with what LaTeX reads as its own escaped, and with places where a line may end."""
-    parts = [part.translate(_LATEX) for part in _BREAK.sub("\\1\0", text).split("\0")]
-    return r"\allowbreak{}".join(parts)
-
-
 FORMATS: Mapping[str, Callable[[LinguisticReport], str]] = {
     "text": as_text,
     "md": as_markdown,
     "html": as_html,
     "csv": as_csv,
     "json": as_json,
-    "latex": as_latex,
     "svg": draw,
 }
 

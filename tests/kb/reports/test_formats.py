@@ -3,10 +3,7 @@
 import csv
 import io
 import json
-import re
 import shutil
-import subprocess
-from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
@@ -15,9 +12,6 @@ from capar.model.errors import UnknownNameError
 from capar.pipelines.linguistic_report import linguistics
 from kb.reports.formats import FORMATS, write
 from kb.reports.linguistics import LinguisticReport
-
-PDFLATEX = shutil.which("pdflatex")
-
 
 @pytest.fixture(scope="module")
 def report() -> LinguisticReport:
@@ -55,34 +49,6 @@ def test_the_drawing_is_svg_with_a_box_for_each_status(report: LinguisticReport)
     assert {"direct", "extension", "not"} == set(rects)
     texts = " ".join(each.text or "" for each in root.iter("{http://www.w3.org/2000/svg}text"))
     assert "blink, point, squint" in texts
-
-
-def test_latex_leaves_no_sign_of_its_own_unescaped(report: LinguisticReport) -> None:
-    for line in write(report, "latex").splitlines():
-        if line.startswith("\\"):
-            continue
-        assert not re.search(r"(?<!\\)[%#$_]", line)
-
-
-@pytest.mark.skipif(PDFLATEX is None, reason="no pdflatex on this machine")
-def test_latex_compiles_and_no_cell_prints_over_another(
-    report: LinguisticReport, tmp_path: Path
-) -> None:
-    assert PDFLATEX is not None
-    (tmp_path / "report.tex").write_text(write(report, "latex"), encoding="utf-8")
-    done = subprocess.run(
-        [PDFLATEX, "-interaction=nonstopmode", "-halt-on-error", "report.tex"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        errors="replace",
-        check=False,
-    )
-    assert done.returncode == 0, done.stdout[-2000:]
-    assert (tmp_path / "report.pdf").stat().st_size > 10_000
-    log = (tmp_path / "report.log").read_text(encoding="latin-1")
-    wide = [float(each) for each in re.findall(r"Overfull \\hbox \(([0-9.]+)pt too wide", log)]
-    assert not [each for each in wide if each > 1.0], log
 
 
 def test_an_unknown_format_is_answered_with_the_known(report: LinguisticReport) -> None:
