@@ -75,7 +75,7 @@ def check(store: Store, *, full: bool = False) -> tuple[Problem, ...]:
 def _faults(things: Things, shared: Things) -> Iterator[str]:
     """What is wrong with statements by shapes, NLTs, units and reach, as lines."""
     yield from faults(things, elsewhere=lambda thing: shared.get(thing, {}).get(TYPE, ()))
-    sizes = {
+    sizes: dict[object, str] = {
         thing: value.value
         for each in (shared, things)
         for thing, said in each.items()
@@ -84,7 +84,7 @@ def _faults(things: Things, shared: Things) -> Iterator[str]:
     }
     for thing, said in things.items():
         for nlt, owner in _NLTS.items():
-            size = next((sizes[each] for each in said.get(owner, ()) if each in sizes), "")
+            size = next((sizes[e] for e in said.get(owner, ()) if e in sizes), "")
             for value in said.get(nlt, ()):
                 if size and isinstance(value, Literal) and not _within(value.value, size):
                     yield (

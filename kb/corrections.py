@@ -298,7 +298,7 @@ def _rewritten(
     """Statements of an end-effector's spans, each upon the segment that it overlaps most."""
 
     def overlap_s(node: Any, span: Span) -> float:
-        at = {each.predicate: each.object for each in machine[node]}
+        at: dict[NamedNode, Any] = {each.predicate: each.object for each in machine[node]}
         return _overlap_s(float(at[CAPAR.start].value), float(at[CAPAR.end].value), span)
 
     nodes = [names.part(graph, "account", each.ee, at) for at, each in enumerate(spans)]
@@ -327,5 +327,10 @@ def _rewritten(
         yield from (Quad(node, predicate, value, graph) for predicate, value in stated)
         if known:  # what is more general than it, the store says if it knows
             label = Literal(span.name)
-            own = {TYPE: CAPAR.Action, LABEL: label, CAPAR.name: label, CAPAR.kindOf: action}
+            own: dict[NamedNode, Any] = {
+                TYPE: CAPAR.Action,
+                LABEL: label,
+                CAPAR.name: label,
+                CAPAR.kindOf: action,
+            }
             yield from (Quad(action, p, o, names.GRAPHS["actions"]) for p, o in own.items())

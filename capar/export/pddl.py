@@ -72,7 +72,18 @@ def pddl_domain(source: PlanSource) -> tuple[str, dict[Upar, str]]:
         PlanExportError: A condition of a kind that has no place in the domain.
     """
     schemas = {each.upar: _schema(source, each.upar) for each in source.steps}
-    names = _unique(schemas)
+    bare = [each.name for each in schemas.values()]
+    for upar, schema in schemas.items():
+        if bare.count(schema.name) > 1:  # told apart by their features
+            bits = upar.core.constraint.features
+            schema.name = "-".join(
+                (upar.name, bits.rel_start, bits.rel_end, bits.change_loc, bits.force)
+            )
+    names = {upar: schema.name for upar, schema in schemas.items()}
+    for schema in schemas.values():
+        own = action_constant(schema.name)
+        schema.before = [each.replace("@action", own) for each in schema.before]
+        schema.after = [each.replace("@action", own) for each in schema.after]
     kinds = _types(source)
     constants = sorted(map(action_constant, names.values()))
     lines = "\n".join(
@@ -97,21 +108,6 @@ def word(name: str) -> str:
     """A name that PDDL takes."""
     word = _NO_NAME.sub("_", name)
     return word if word[:1].isalpha() else f"a_{word}"
-
-
-def _unique(schemas: dict[Upar, _Action]) -> dict[Upar, str]:
-    """A name for every action; where two have the same, with the features that tell them apart."""
-    bare = [each.name for each in schemas.values()]
-    for upar, schema in schemas.items():
-        if bare.count(schema.name) > 1:
-            features = upar.core.constraint.features
-            bits = (features.rel_start, features.rel_end, features.change_loc, features.force)
-            schema.name = "-".join((upar.name, *bits))
-    for schema in schemas.values():
-        own = action_constant(schema.name)
-        schema.before = [each.replace("@action", own) for each in schema.before]
-        schema.after = [each.replace("@action", own) for each in schema.after]
-    return {upar: schema.name for upar, schema in schemas.items()}
 
 
 def _types(source: PlanSource) -> dict[str, str]:
@@ -151,8 +147,14 @@ def _schema(source: PlanSource, upar: Upar) -> _Action:
     features = upar.core.constraint.features
     action.parameters = {"?EE": effector_type(features.end_effector), "?agent": "agent"}
     action.before.append("(of ?EE ?agent)")
-    for name in upar.objects:
-        action.parameters[f"?{name}"] = _common_kind(source, upar, name)
+    for at, name in enumerate(upar.objects):  # the nearest kind of all that was observed there
+        chains = [
+            [kind_type(kind) for kind in source.kinds[each.ipar.objects[at]]]
+            for each in source.steps
+            if each.upar == upar
+        ]
+        shared = (kind for kind in chains[0] if all(kind in chain for chain in chains))
+        action.parameters[f"?{name}"] = next(shared, "thing")
     for condition in upar.applicability:
         action.before.append(f"(capable ?{condition.arguments[0]} @action)")
     if upar.objects:
@@ -207,18 +209,6 @@ def _asserted(condition: Condition, place: str) -> str:
     return atom if condition.holds else f"(not {atom})"
 
 
-def _common_kind(source: PlanSource, upar: Upar, parameter: str) -> str:
-    """The nearest kind of all that was observed in a place of the action."""
-    at = upar.objects.index(parameter)
-    chains = [
-        [kind_type(kind) for kind in source.kinds[each.ipar.objects[at]]]
-        for each in source.steps
-        if each.upar == upar
-    ]
-    shared = [kind for kind in chains[0] if all(kind in chain for chain in chains)]
-    return shared[0] if shared else "thing"
-
-
 @dataclass(frozen=True, slots=True)
 class PddlStep:
     """A step as the action of the domain, with its arguments."""
@@ -256,7 +246,7 @@ def pddl(source: PlanSource) -> PddlPlan:
         world.objects[thing_word(name)] = kind_type(chain[0])
     for ee, steps in source.links.items():
         if steps:
-            _Link(world, ee, steps).go_through()
+            _Link(world, ee, steps)
     name = word(source.name)
     lines = [
         f"(define (problem {name}_observed)",
@@ -297,7 +287,7 @@ class _Link:
     """One link's steps: the places and postures that it goes through, and what it ends in."""
 
     def __init__(self, world: _World, ee: str, steps: Sequence[PlanStep]) -> None:
-        self.world, self.ee, self.steps = world, ee, steps
+        self.world, self.ee = world, ee
         self.holder = word(f"{ee}_ee")
         hand = steps[0].upar.core.constraint.features.end_effector
         world.objects[self.holder] = effector_type(hand)
@@ -310,18 +300,15 @@ class _Link:
         self.touched: dict[str, bool] = {}
         """Whether the last word on each contact of the end-effector is that there is one."""
 
-    def go_through(self) -> None:
-        """State every step, then the goal."""
-        world, holder = self.world, self.holder
-        for planned in self.steps:
+        for planned in steps:
             self._step(planned, world.names[planned.upar])
         for other, holds in self.touched.items():
-            atom = f"(contact {holder} {thing_word(other)})"
+            atom = f"(contact {self.holder} {thing_word(other)})"
             world.goal[atom if holds else f"(not {atom})"] = None
         for thing, place in self.places.items():
-            world.goal[f"(at {holder} {thing_word(thing)} {place})"] = None
-        if self.steps[-1].rests:
-            world.goal[f"(in_posture {holder} {self.posture})"] = None
+            world.goal[f"(at {self.holder} {thing_word(thing)} {place})"] = None
+        if steps[-1].rests:
+            world.goal[f"(in_posture {self.holder} {self.posture})"] = None
 
     def _step(self, planned: PlanStep, name: str) -> None:
         world, holder, what = self.world, self.holder, planned.ipar.objects

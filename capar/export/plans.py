@@ -95,7 +95,8 @@ def plan_source(
     known = tuple(upars)
     links = {
         link.ee: tuple(
-            _plan_step(step, by_link.get(link.ee, []), known) for step in _own_steps(par, link.ee)
+            _plan_step(step, by_link.get(link.ee, []), known)
+            for step in (*link.steps, *([par.common] if par.common else []))
         )
         for link in par.links
     }
@@ -110,12 +111,6 @@ def bound_condition(upar: Upar, ipar: Ipar, condition: Condition) -> tuple[str, 
     names = dict(zip(upar.objects, ipar.objects, strict=True))
     names |= {upar.agent: ipar.agent, HOLDER: ipar.ee}
     return tuple(names.get(each, each) for each in condition.arguments)
-
-
-def _own_steps(par: ComplexPar, ee: str) -> tuple[Step, ...]:
-    """A link's steps; one that all share is done by each."""
-    (own,) = [link for link in par.links if link.ee == ee]
-    return (*own.steps, par.common) if par.common else own.steps
 
 
 def _plan_step(step: Step, ipars: list[Ipar], upars: tuple[Upar, ...]) -> PlanStep:
@@ -178,7 +173,11 @@ def behavior_tree(source: PlanSource) -> str:
     for condition in CONDITIONS:
         leaf = ET.SubElement(root, "BehaviorTree", ID=condition)
         ET.SubElement(leaf, "Condition", ID=f"Is{condition}")
-    _models(ET.SubElement(root, "TreeNodesModel"), source)
+    models = ET.SubElement(root, "TreeNodesModel")
+    for name, ports in (dict.fromkeys(_actions(source), PORTS) | CONDITIONS).items():
+        model = ET.SubElement(models, "SubTree", ID=name)
+        for port in ports:
+            ET.SubElement(model, "input_port", name=port, type="std::string")
     ET.indent(root)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
 
@@ -202,15 +201,9 @@ def _step(parent: ET.Element, planned: PlanStep) -> None:
             duration_s="",
             posture="",
         )
-    _action(sequence, planned)
-    for condition in planned.upar.post_assertions:
-        _condition(sequence, planned, condition)
-
-
-def _action(parent: ET.Element, planned: PlanStep) -> None:
     duration = planned.ipar.core.duration_s
     ET.SubElement(
-        parent,
+        sequence,
         "SubTree",
         ID=planned.ipar.upar,
         ee=planned.ipar.ee,
@@ -219,6 +212,8 @@ def _action(parent: ET.Element, planned: PlanStep) -> None:
         duration_s="" if duration is None else f"{duration:.3f}",
         posture=planned.ipar.posture,
     )
+    for condition in planned.upar.post_assertions:
+        _condition(sequence, planned, condition)
 
 
 def _condition(parent: ET.Element, planned: PlanStep, condition: Condition) -> None:
@@ -240,15 +235,6 @@ def _actions(source: PlanSource) -> list[str]:
     used = {planned.ipar.upar for planned in source.steps}
     prepared = {p.action.action for planned in source.steps for p in planned.upar.preparation}
     return sorted(used | prepared)
-
-
-def _models(parent: ET.Element, source: PlanSource) -> None:
-    """What the subtrees are told, for editors of trees."""
-    subtrees = dict.fromkeys(_actions(source), PORTS) | CONDITIONS
-    for name, ports in subtrees.items():
-        model = ET.SubElement(parent, "SubTree", ID=name)
-        for port in ports:
-            ET.SubElement(model, "input_port", name=port, type="std::string")
 
 
 NAMESPACE = "http://www.bml-initiative.org/bml/bml-1.0"
@@ -285,8 +271,12 @@ def bml(source: PlanSource) -> str:
     """
     ET.register_namespace("", NAMESPACE)
     ET.register_namespace("par", PAR_NAMESPACE)
+    name = source.name
     root = ET.Element(
-        _core("bml"), id=_identifier(source.name), characterId=source.agent, composition="MERGE"
+        _core("bml"),
+        id=name if name[:1].isalpha() else f"b_{name}",
+        characterId=source.agent,
+        composition="MERGE",
     )
     for ee, steps in source.links.items():
         for number, planned in enumerate(steps):
@@ -298,8 +288,8 @@ def bml(source: PlanSource) -> str:
             id=f"gaze_{number}",
             target=target,
             influence=INFLUENCE,
-            start=_seconds(start),
-            end=_seconds(end),
+            start=f"{start:.3f}",
+            end=f"{end:.3f}",
         )
     _constraints(root, source)
     ET.indent(root)
@@ -310,28 +300,15 @@ def _core(name: str) -> str:
     return f"{{{NAMESPACE}}}{name}"
 
 
-def _identifier(name: str) -> str:
-    return name if name[:1].isalpha() else f"b_{name}"
-
-
-def _seconds(time: float) -> str:
-    return f"{time:.3f}"
-
-
-def _span(planned: PlanStep, source: PlanSource) -> tuple[float, float]:
-    """When a step begins and ends, in whole milliseconds, so that durations add up [s]."""
-    begin = planned.step.begin * source.duration_s
-    return round(begin, 3), round(begin + planned.step.share * source.duration_s, 3)
-
-
 def _gesture(root: ET.Element, ee: str, number: int, planned: PlanStep, source: PlanSource) -> None:
-    begin, end = _span(planned, source)
-    before = f"{ee}_{number - 1}:end" if number else _seconds(begin)
+    """A step; its times are in whole milliseconds, so that durations add up."""
+    begin = planned.step.begin * source.duration_s
+    end = round(begin + planned.step.share * source.duration_s, 3)
     attributes = {
         "id": f"{ee}_{number}",
         "lexeme": planned.ipar.upar,
-        "start": before,
-        "end": f"{ee}_{number}:start + {_seconds(end - begin)}",
+        "start": f"{ee}_{number - 1}:end" if number else f"{begin:.3f}",
+        "end": f"{ee}_{number}:start + {end - round(begin, 3):.3f}",
     }
     if ee in MODES:
         attributes["mode"] = MODES[ee]

@@ -15,12 +15,8 @@ from capar.model.par import ComplexPar, Condition, Step, Upar
 from capar.views.tables import performers
 
 INDENT = "    "
-CAPABILITY = (
-    "def applicability_condition({parameters}):\n"
-    "    if {test}:\n"
-    "        return 1\n"
-    "    else:\n"
-    "        return 0\n"
+TESTED = (
+    "def {name}({parameters}):\n    if {test}:\n        return 1\n    else:\n        return 0\n"
 )
 
 
@@ -48,13 +44,24 @@ def _upar(par: Upar) -> str:
                 "such as agent, obj1"
             )
     parameters = ", ".join(names)
+    prepared = ""
+    for each in par.preparation:
+        objects = _tuple(_term(name, names) for name in each.action.objects)
+        fields = {"agents": par.agent, "objects": objects}
+        if each.action.purpose:
+            fields["purpose"] = repr(each.action.purpose)
+        body = _indented(_indented(_returned("PRIMITIVE", _action(each.action.action, fields))))
+        prepared += f"{INDENT}if not ({_test(each.condition, names)}):\n{body}"
+    action = _action(par.name, {"agents": par.agent, "objects": _tuple(par.objects)})
+    able = " and ".join(_test(each, names) for each in par.applicability) or "True"
+    ended = " and ".join(_test(each, names) for each in par.core.termination) or "True"
     return "\n\n".join(
         [
-            _heading(par.name),
-            _applicability(par, names, parameters),
-            _preparation(par, names, parameters),
-            _termination(par, names, parameters),
-            _primitive(par, parameters),
+            f"# {par.name!r}\n",
+            TESTED.format(name="applicability_condition", parameters=parameters, test=able),
+            f"def preparatory_spec({parameters}):\n{prepared}{INDENT}return 1\n",
+            TESTED.format(name="termination_conditions", parameters=parameters, test=ended),
+            f"def execution_steps({parameters}):\n{_indented(_returned('PRIMITIVE', action))}",
         ]
     )
 
@@ -97,47 +104,15 @@ def _execution(par: ComplexPar, agents: Mapping[str, str], whose: Mapping[str, s
         else:
             whole = _nest("SEQUENCE", [whole, last])
     parameters = ", ".join(["self", *(agents.values() or ["agent"]), *names.values()])
-    body = f"complex = {whole}\nactions = {{'COMPLEX': complex}}\nreturn actions\n"
+    body = f"complex = {whole}\n{_returned('COMPLEX', 'complex')}"
     known = [*agents.items(), *names.items()]
     legend = "".join(f"# {new} was {old!r}\n" for old, new in known)
-    head = f"from actionDef import *\n\n{_heading(par.name)}{legend}"
+    head = f"from actionDef import *\n\n# {par.name!r}\n{legend}"
     return f"{head}\n\ndef execution_steps({parameters}):\n{_indented(body)}"
 
 
-def _heading(name: str) -> str:
-    return f"# {name!r}\n"
-
-
-def _applicability(par: Upar, names: Sequence[str], parameters: str) -> str:
-    tests = [_test(each, names) for each in par.applicability]
-    return CAPABILITY.format(parameters=parameters, test=" and ".join(tests) or "True")
-
-
-def _preparation(par: Upar, names: Sequence[str], parameters: str) -> str:
-    out = f"def preparatory_spec({parameters}):\n"
-    for prepared in par.preparation:
-        objects = _tuple(_term(name, names) for name in prepared.action.objects)
-        fields = {"agents": par.agent, "objects": objects}
-        if prepared.action.purpose:
-            fields["purpose"] = repr(prepared.action.purpose)
-        action = _action(prepared.action.action, fields)
-        body = f"actions = {{'PRIMITIVE': {action}}}\nreturn actions\n"
-        out += f"{INDENT}if not ({_test(prepared.condition, names)}):\n{_indented(_indented(body))}"
-    return out + f"{INDENT}return 1\n"
-
-
-def _termination(par: Upar, names: Sequence[str], parameters: str) -> str:
-    tests = " and ".join(_test(each, names) for each in par.core.termination) or "True"
-    return (
-        f"def termination_conditions({parameters}):\n"
-        f"{INDENT}if {tests}:\n{INDENT * 2}return 1\n{INDENT}else:\n{INDENT * 2}return 0\n"
-    )
-
-
-def _primitive(par: Upar, parameters: str) -> str:
-    fields = {"agents": par.agent, "objects": _tuple(par.objects)}
-    body = f"actions = {{'PRIMITIVE': {_action(par.name, fields)}}}\nreturn actions\n"
-    return f"def execution_steps({parameters}):\n{_indented(body)}"
+def _returned(kind: str, action: str) -> str:
+    return f"actions = {{{kind!r}: {action}}}\nreturn actions\n"
 
 
 def _step(step: Step, names: Mapping[str, str], parent: str, agents: str) -> str:
@@ -155,22 +130,18 @@ def _step(step: Step, names: Mapping[str, str], parent: str, agents: str) -> str
 
 
 def _test(condition: Condition, names: Sequence[str]) -> str:
-    """A condition as an expression."""
-    terms = [_term(each, names) for each in condition.arguments]
-    text = {
-        "capable": f"checkCapability({names[1]}, {_capability(condition)}, [{names[1]}])",
-        "duration": "elapsed(self) >= self.duration",
-    }.get(condition.kind, f"{_function(condition.kind)}({', '.join(terms)})")
+    """A condition as an expression; an odd kind is passed as a literal."""
+    terms = ", ".join(_term(each, names) for each in condition.arguments)
+    kind, action = condition.kind, condition.arguments[-1:]
+    if kind == "capable":
+        able = repr(action[0]) if action else "self.name"
+        text = f"checkCapability({names[1]}, {able}, [{names[1]}])"
+    elif kind == "duration":
+        text = "elapsed(self) >= self.duration"
+    else:
+        plain = kind.isidentifier() and not iskeyword(kind)
+        text = f"{kind if plain else f'holds({kind!r})'}({terms})"
     return text if condition.holds else f"not {text}"
-
-
-def _capability(condition: Condition) -> str:
-    return repr(condition.arguments[-1]) if condition.arguments else "self.name"
-
-
-def _function(kind: str) -> str:
-    """What tests a condition of that kind; an odd kind is passed as a literal."""
-    return kind if kind.isidentifier() and not iskeyword(kind) else f"holds({kind!r})"
 
 
 def _term(argument: str, names: Iterable[str]) -> str:

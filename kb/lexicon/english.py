@@ -54,14 +54,6 @@ def the(name: str) -> str:
     return spoken if alone else f"the {spoken}"
 
 
-def a(name: str) -> str:
-    """A name as an indefinite noun phrase: ``an apple``; one that stands alone stays so."""
-    spoken = noun(name)
-    if the(name) == spoken:
-        return spoken
-    return f"{'an' if spoken[:1] in 'aeiou' else 'a'} {spoken}"
-
-
 def the_agent(name: str, kind: str = "") -> str:
     """Who acts: ``the tall man``, but ``Anna``; a name with a number stands alone as it is.
 

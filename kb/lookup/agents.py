@@ -189,7 +189,7 @@ def _declared_kind(name: str) -> list[Quad]:
 
 
 def _declared_agent(name: str) -> list[Quad]:
-    stated = {
+    stated: dict[NamedNode, NamedNode | Literal] = {
         CAPAR.declared: Literal(True),
         TYPE: CAPAR.Agent,
         LABEL: Literal(name),

@@ -22,6 +22,7 @@ from capar.model.errors import CaparError, UnknownNameError
 from kb.store import names, sparql, statements
 from kb.store.answers import Answer, exact, plain, turtle
 from kb.store.answers import Found as Term
+from kb.store.answers import Plain
 
 if TYPE_CHECKING:
     from kb.store.answers import Answer
@@ -349,7 +350,7 @@ def as_csv(answer: Answer) -> str:
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(header(answer))
-    truth = [] if answer.boolean is None else [[answer.boolean]]
+    truth: list[list[Plain]] = [] if answer.boolean is None else [[answer.boolean]]
     for row in truth or [list(map(exact, row)) for row in _rows(answer)]:
         writer.writerow([str(e).lower() if isinstance(e, bool) else e for e in row])
     return out.getvalue()

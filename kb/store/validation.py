@@ -182,7 +182,7 @@ def _fits(value: Node, rule: Rule, kinds: Kinds) -> bool:
             return False
         if rule.of_class:
             asked = {rule.of_class, *classes_below(rule.of_class)}
-            if asked.isdisjoint(kinds(value)):  # type: ignore[arg-type]
+            if asked.isdisjoint(kinds(value)):
                 return False
     elif rule.datatype and not (isinstance(value, Literal) and value.datatype == rule.datatype):
         return False

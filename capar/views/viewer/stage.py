@@ -84,7 +84,8 @@ def stage(capture: Capture, *, at_s: float | None = None) -> Stage:
         capture: The capture.
         at_s: The frame nearest to this time is shown, whatever others are left out [s].
     """
-    frames = shown_frames(capture)
+    every, last = max(round(capture.rate_hz / SMOOTH_HZ), 1), len(capture.times) - 1
+    frames = np.unique([*range(0, last, every), last])
     if at_s is not None:
         frames = np.union1d(frames, np.argmin(np.abs(capture.times - at_s)))
     stretching = {one.bodies[0] for one in capture.notices if one.code == "bone-stretches"}
@@ -95,24 +96,13 @@ def stage(capture: Capture, *, at_s: float | None = None) -> Stage:
     return Stage(capture.name, capture.times[frames], bodies)
 
 
-def shown_frames(capture: Capture) -> Int[np.ndarray, "frames"]:
-    """The frames that are shown: every so many, and the last one."""
-    every = max(round(capture.rate_hz / SMOOTH_HZ), 1)
-    last = len(capture.times) - 1
-    return np.unique([*range(0, last, every), last])
-
-
 def _staged(body: Sensor | TagObject, frames: Int[np.ndarray, "frames"]) -> StagedBody:
-    stream = body.stream
-    at = stream.positions[frames], stream.orientations[frames]
-    faint = isinstance(body, TagObject) and bool(body.assumed)
-    return StagedBody(body.name, _kind(body), body.shape, *at, faint=faint)
-
-
-def _kind(body: Sensor | TagObject) -> str:
+    at = body.stream.positions[frames], body.stream.orientations[frames]
     if isinstance(body, TagObject):
-        return {TagType.MOBILE: "mobile", TagType.FIXED: "fixed"}.get(body.tag, "self")
-    return "looks" if body.role is Role.ATTENDS else "sensor"
+        kind = {TagType.MOBILE: "mobile", TagType.FIXED: "fixed"}.get(body.tag, "self")
+        return StagedBody(body.name, kind, body.shape, *at, faint=bool(body.assumed))
+    kind = "looks" if body.role is Role.ATTENDS else "sensor"
+    return StagedBody(body.name, kind, body.shape, *at)
 
 
 def world_bounds(shown: Stage) -> Float[np.ndarray, "2 3"]:
@@ -187,7 +177,12 @@ def _known(fit: Fit) -> Bool[np.ndarray, "frames"]:
 
 def _ground(bodies: Sequence[StagedBody]) -> StagedBody:
     """A level plate under the soles."""
-    soles = [_lowest(body) for body in bodies if body.name.endswith("_foot")]
+    soles = []
+    for body in bodies:
+        if body.name.endswith("_foot") and body.shape is not None:
+            turns = Rotation.from_quat(body.orientations, scalar_first=True).as_matrix()
+            heights = turns[:, 2] @ np.array(body.shape.vertices).T
+            soles.append(body.positions[:, 2] + heights.min(axis=1))
     top = float(np.nanquantile(np.min(soles, axis=0), LOWEST_SHARE))
     places = np.concatenate([body.positions[:, :2] for body in bodies])
     low, high = np.nanmin(places, axis=0) - MARGIN_M, np.nanmax(places, axis=0) + MARGIN_M
@@ -197,11 +192,3 @@ def _ground(bodies: Sequence[StagedBody]) -> StagedBody:
     middle = np.array([*(low + high) / 2.0, top - THICK_M / 2.0])
     turns = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1))
     return StagedBody(GROUND, "fixed", shape, np.tile(middle, (frames, 1)), turns, faint=True)
-
-
-def _lowest(body: StagedBody) -> Float[np.ndarray, "frames"]:
-    """Height of a body's lowest point at each frame [m]."""
-    assert body.shape is not None
-    turns = Rotation.from_quat(body.orientations, scalar_first=True).as_matrix()
-    heights = turns[:, 2] @ np.array(body.shape.vertices).T
-    return np.asarray(body.positions[:, 2] + heights.min(axis=1))

@@ -2,7 +2,6 @@
 
 import json
 from base64 import b64encode
-from collections.abc import Sequence
 from html import escape
 from importlib import resources
 from typing import Any
@@ -13,7 +12,7 @@ from trimesh.exchange.gltf import export_glb
 
 from capar.model.facts import LookingAt, Touching
 from capar.model.observation import Observation
-from capar.views.picture import COLOURS, CONTACT, MOTION, OTHERS, PALE, Kind, Row, frame_clock, rows
+from capar.views.picture import COLOURS, CONTACT, MOTION, OTHERS, PALE, Kind, frame_clock, rows
 from capar.views.viewer.stage import Stage
 
 
@@ -27,14 +26,11 @@ def surfaces_glb(shown: Stage) -> bytes:
             )
             scene.add_geometry(mesh, node_name=body.name, geom_name=body.name)
     if not scene.geometry:
-        scene.add_geometry(_nothing(), node_name="nothing", geom_name="nothing")
+        # A file without a surface would be none: this one is too small to be seen.
+        corners = np.array([[0.0, 0.0, 0.0], [1e-9, 0.0, 0.0], [0.0, 1e-9, 0.0]])
+        mesh = trimesh.Trimesh(corners, np.array([[0, 1, 2]]), process=False)
+        scene.add_geometry(mesh, node_name="nothing", geom_name="nothing")
     return bytes(export_glb(scene))  # type: ignore[no-untyped-call]
-
-
-def _nothing() -> trimesh.Trimesh:
-    """A file without a surface would be none: this one is too small to be seen."""
-    corners = np.array([[0.0, 0.0, 0.0], [1e-9, 0.0, 0.0], [0.0, 1e-9, 0.0]])
-    return trimesh.Trimesh(corners, np.array([[0, 1, 2]]), process=False)
 
 
 BARS = {Kind.MOTION: MOTION, Kind.BARS: CONTACT}
@@ -97,29 +93,18 @@ def _rows(observation: Observation) -> list[dict[str, Any]]:
         if row.kind is Kind.HEADING:
             out.append({"heading": row.label})
         elif row.spans:
-            out.append({"label": row.label, "spans": _spans(row)})
+            seen = sorted({each.label for each in row.spans})
+            spans = []
+            for each in row.spans:
+                colour = COLOURS.get(each.kind, OTHERS[len(each.kind) % len(OTHERS)])
+                if row.kind in BARS:
+                    colour = BARS[row.kind]
+                elif row.kind is Kind.NAMES:
+                    colour = PALE[seen.index(each.label) % len(PALE)]
+                start, end = round(each.start_s, 4), round(each.end_s, 4)
+                spans.append({"start": start, "end": end, "label": each.label, "colour": colour})
+            out.append({"label": row.label, "spans": spans})
     return out
-
-
-def _spans(row: Row) -> list[dict[str, Any]]:
-    seen = sorted({each.label for each in row.spans})
-    return [
-        {
-            "start": round(each.start_s, 4),
-            "end": round(each.end_s, 4),
-            "label": each.label,
-            "colour": _colour(row, each.kind, seen, each.label),
-        }
-        for each in row.spans
-    ]
-
-
-def _colour(row: Row, kind: str, seen: Sequence[str], label: str) -> str:
-    if row.kind in BARS:
-        return BARS[row.kind]
-    if row.kind is Kind.NAMES:
-        return PALE[seen.index(label) % len(PALE)]
-    return COLOURS.get(kind, OTHERS[len(kind) % len(OTHERS)])
 
 
 def _contacts(observation: Observation) -> list[list[Any]]:

@@ -3,7 +3,6 @@
 import csv
 import io
 import json
-import shutil
 from xml.etree import ElementTree
 
 import pytest
@@ -12,6 +11,7 @@ from capar.model.errors import UnknownNameError
 from capar.pipelines.linguistic_report import linguistics
 from kb.reports.formats import FORMATS, write
 from kb.reports.linguistics import LinguisticReport
+
 
 @pytest.fixture(scope="module")
 def report() -> LinguisticReport:
