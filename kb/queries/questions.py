@@ -20,9 +20,8 @@ from pyoxigraph import Literal, NamedNode, RdfFormat, serialize
 
 from capar.model.errors import CaparError, UnknownNameError
 from kb.store import names, sparql, statements
-from kb.store.answers import Answer, exact, plain, turtle
+from kb.store.answers import Answer, Plain, exact, plain, turtle
 from kb.store.answers import Found as Term
-from kb.store.answers import Plain
 
 if TYPE_CHECKING:
     from kb.store.answers import Answer
