@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from capar.body.anthropometry import Measures, is_right, mirrored, table
 from capar.body.shapes import forms, palm_centre
 from capar.body.skeleton import Segment, eyes_between, inertias, skeleton
+from capar.model import geometry
 from capar.model.errors import CaparError, UnknownNameError
 
 ROOT, ROOT_SIZE = "root", 7
@@ -45,26 +46,26 @@ def body_spec(measures: Measures, *, prefix: str = "") -> mujoco.MjSpec:
         start = segments[segment.parent].origin if segment.parent else np.zeros(3)
         body = bodies[segment.parent].add_body(name=prefix + name, pos=segment.origin - start)
         body.explicitinertial = True
-        weight = weights[name]
-        body.mass, body.ipos, body.inertia = weight.mass, weight.centre, weight.moments
+        body.mass, body.ipos, body.inertia = weights[name]
         if not segment.parent:
             body.add_freejoint(name=prefix + ROOT)
         bodies[name] = body
-    for row in joint_rows(measures):
+    for row in _with_left(table("joints")["joint"]):
+        young, share = np.radians(row.get("child", row["range"])), measures.adult_share
         bodies[row["body"]].add_joint(
             name=prefix + row["name"],
             type=mujoco.mjtJoint.mjJNT_HINGE,
             axis=np.array(row["axis"], dtype=float),
             limited=mujoco.mjtLimited.mjLIMITED_TRUE,
-            range=row["range"],
+            range=(1.0 - share) * young + share * np.radians(row["range"]),
             armature=ARMATURE,
         )
     for row in site_rows():
-        base = _site_base(row, measures, segments[row["body"]])
+        base, axes = _site_base(row, measures, segments[row["body"]]), row.get("axes")
         bodies[row["body"]].add_site(
             name=prefix + row["name"],
             pos=base + np.array(row["offset"]) * measures["stature"],
-            quat=_turn(row.get("axes")).as_quat(scalar_first=True),
+            quat=axes_turn(axes["x"], axes["z"]).as_quat(scalar_first=True) if axes else None,
             size=[0.008, 0.0, 0.0],
             group=4,
         )
@@ -87,18 +88,15 @@ def body_spec(measures: Measures, *, prefix: str = "") -> mujoco.MjSpec:
     return spec
 
 
-def joint_rows(measures: Measures) -> list[dict[str, Any]]:
-    """Every hinge with its axis, and its range [rad] between a child's and an adult's by age."""
+def _with_left(right: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Rows, each of the right side followed by its mirror image."""
     out = []
-    for row in table("joints")["joint"]:
-        young = np.radians(row.get("child", row["range"]))
-        grown, share = np.radians(row["range"]), measures.adult_share
-        one = {**row, "range": (1.0 - share) * young + share * grown}
-        out.append(one)
+    for row in right:
+        out.append(row)
         if is_right(row["body"]):
             x, y, z = row["axis"]
             names = {key: mirrored(row[key]) for key in ("body", "name")}
-            out.append({**one, **names, "axis": [-x, y, -z]})
+            out.append({**row, **names, "axis": [-x, y, -z]})
     return out
 
 
@@ -124,11 +122,10 @@ def _site_base(row: Mapping[str, Any], m: Measures, segment: Segment) -> Float[n
     return np.asarray(row["along"] * (segment.tip - segment.origin))
 
 
-def _turn(axes: Mapping[str, Any] | None) -> Rotation:
-    if not axes:
-        return Rotation.identity()
-    x, z = np.array(axes["x"], dtype=float), np.array(axes["z"], dtype=float)
-    return Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=1))
+def axes_turn(x: Iterable[float], z: Iterable[float]) -> Rotation:
+    """The rotation that brings x and z axes to directions at a right angle to each other."""
+    along, up = np.array([*x], dtype=float), np.array([*z], dtype=float)
+    return Rotation.from_matrix(np.stack([along, np.cross(up, along), up], axis=1))
 
 
 class PostureError(CaparError):
@@ -278,45 +275,18 @@ class Poses:
 
 def poses_of(human: Human, motion: Float[np.ndarray, "frames posture"]) -> Poses:
     """The poses that a motion brings the segments to."""
-    model, data = human.model, mujoco.MjData(human.model)
-    bodies = range(1, model.nbody)
-    positions = np.empty((len(motion), model.nbody - 1, 3))
-    orientations = np.empty((len(motion), model.nbody - 1, 4))
-    for frame, posture in enumerate(motion):
-        data.qpos[:] = posture
-        mujoco.mj_kinematics(model, data)
-        positions[frame], orientations[frame] = data.xpos[1:], data.xquat[1:]
-    parents = tuple(int(model.body_parentid[body]) - 1 for body in bodies)
-    return Poses(
-        tuple(model.body(body).name for body in bodies),
-        parents,
-        np.array(model.body_pos[1:]),
-        positions,
-        _signed(orientations),
-        _signed(_against(orientations, parents)),
+    model = human.model
+    names = tuple(model.body(body).name for body in range(1, model.nbody))
+    where = human.sites(motion, names)
+    orientations = np.stack([where[name][1] for name in names], axis=1)
+    parents = tuple(int(parent) - 1 for parent in model.body_parentid[1:])
+    turns = orientations.copy()
+    for number, parent in enumerate(parents[1:], 1):
+        base, own = (geometry.rotations(orientations[:, each]) for each in (parent, number))
+        turns[:, number] = geometry.quaternions(base.inv() * own)
+    smooth = (
+        np.stack([geometry.continuous(each[:, n]) for n in range(len(names))], axis=1)
+        for each in (orientations, turns)
     )
-
-
-def _against(
-    orientations: Float[np.ndarray, "frames segments 4"], parents: Sequence[int]
-) -> Float[np.ndarray, "frames segments 4"]:
-    out = orientations.copy()
-    for number, parent in enumerate(parents):
-        if parent >= 0:
-            own, base = (
-                Rotation.from_quat(orientations[:, each], scalar_first=True)
-                for each in (number, parent)
-            )
-            out[:, number] = (base.inv() * own).as_quat(scalar_first=True)
-    return out
-
-
-def _signed(
-    quaternions: Float[np.ndarray, "frames segments 4"],
-) -> Float[np.ndarray, "frames segments 4"]:
-    """The same rotations with signs by which neighbouring frames are near each other."""
-    near = np.einsum("fsi,fsi->fs", quaternions[1:], quaternions[:-1])
-    signs = np.cumprod(np.where(near < 0.0, -1.0, 1.0), axis=0)
-    out = quaternions.copy()
-    out[1:] *= signs[:, :, None]
-    return out
+    positions = np.stack([where[name][0] for name in names], axis=1)
+    return Poses(names, parents, np.array(model.body_pos[1:]), positions, *smooth)

@@ -10,6 +10,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import Measures
+from capar.body.human import axes_turn
 from capar.body.shapes import PALM, PALM_FROM_WRIST
 from capar.model.capture import Shape, TagType
 from capar.model.errors import CaparError, UnknownNameError
@@ -242,7 +243,7 @@ def _side_grip(
     if not thing.round:
         wrist = PALM_FROM_WRIST * np.cos(pitch) * hand_m
         place[0] = min(0.0, low[0] - WRIST_OUT_M + wrist)
-    return RigidTransform.from_components(place, palm_turn(inwards, fingers))
+    return RigidTransform.from_components(place, axes_turn(fingers, inwards))
 
 
 def _top_grip(thing: Thing, side: str, measures: Measures, yaw: float) -> RigidTransform:
@@ -251,7 +252,7 @@ def _top_grip(thing: Thing, side: str, measures: Measures, yaw: float) -> RigidT
     fingers = Rotation.from_euler("z", sign * yaw).apply([1.0, 0.0, 0.0])
     top = np.array([0.0, 0.0, thing.shape.bounds[1, 2] + AIR_M])
     back = 0.1 * measures["hand_length"] * fingers
-    return RigidTransform.from_components(top - back, palm_turn([0.0, 0.0, -1.0], fingers))
+    return RigidTransform.from_components(top - back, axes_turn(fingers, [0.0, 0.0, -1.0]))
 
 
 def _back_grip(thing: Thing, side: str, measures: Measures, roll: float) -> RigidTransform:
@@ -260,7 +261,7 @@ def _back_grip(thing: Thing, side: str, measures: Measures, roll: float) -> Rigi
     fingers = np.array([0.0, -sign * np.sin(roll), np.cos(roll)])
     height = _clear_height(thing, measures["hand_length"], roll)
     place = np.array([thing.shape.bounds[0, 0] - AIR_M, 0.0, height])
-    return RigidTransform.from_components(place, palm_turn([1.0, 0.0, 0.0], fingers))
+    return RigidTransform.from_components(place, axes_turn(fingers, [1.0, 0.0, 0.0]))
 
 
 def _clear_height(thing: Thing, hand_m: float, tilt: float) -> float:
@@ -268,11 +269,3 @@ def _clear_height(thing: Thing, hand_m: float, tilt: float) -> float:
     low, high = thing.shape.bounds
     heel = PALM[0] * np.cos(tilt) + 0.44 * np.sin(tilt)
     return float(max(0.5 * (low[2] + high[2]), low[2] + heel * hand_m + CLEAR_M))
-
-
-def palm_turn(
-    inwards: Float[np.ndarray, "3"] | list[float], fingers: Float[np.ndarray, "3"]
-) -> Rotation:
-    """Orientation of a palm that faces one way and whose fingers point another."""
-    z, x = np.asarray(inwards, dtype=float), np.asarray(fingers, dtype=float)
-    return Rotation.from_matrix(np.stack([x, np.cross(z, x), z], axis=1))
