@@ -37,6 +37,14 @@ EDGE_COST = 100.0
 Points = Mapping[str, Float[np.ndarray, "frames 3"]]
 
 
+def joint_limits(
+    human: Human, longest_rad: float
+) -> tuple[mink.ConfigurationLimit, mink.VelocityLimit]:
+    """Joints keep to their ranges, and turn by so much in a step at most [rad]."""
+    speeds = mink.VelocityLimit(human.model, dict.fromkeys(human.joints, longest_rad))
+    return mink.ConfigurationLimit(human.model), speeds
+
+
 class Solver:
     """Steps towards what tasks want, within the joints' ranges, shortened where they overshoot.
 
@@ -57,8 +65,8 @@ class Solver:
         self.longest_rad = self.radius = longest_rad
         """Most that a joint may turn in a step, ever and now [rad]."""
 
-        self.speed = mink.VelocityLimit(human.model, dict.fromkeys(human.joints, longest_rad))
-        self.limits = [mink.ConfigurationLimit(human.model), self.speed, *limits]
+        ranges, self.speed = joint_limits(human, longest_rad)
+        self.limits = [ranges, self.speed, *limits]
 
     @property
     def settled(self) -> bool:

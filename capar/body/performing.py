@@ -10,7 +10,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.gaze import look_tasks, share_costs
 from capar.body.human import Human
-from capar.body.inverse_kinematics import BalanceLimit, BalanceTask, standing_support
+from capar.body.inverse_kinematics import BalanceLimit, BalanceTask, joint_limits, standing_support
 from capar.body.scenes import Scene, SceneError, grips
 from capar.body.scripts import (
     SIDES,
@@ -245,11 +245,7 @@ class Actor:
         self.palms = {s: mink.FrameTask(f"{s}_palm", "site", *PALM_COST) for s in SIDES}
         self.looks = look_tasks()
         self.tasks = [*self.palms.values(), *self.looks.values(), *self._stance()]
-        self.limits = [
-            mink.ConfigurationLimit(human.model),
-            mink.VelocityLimit(human.model, dict.fromkeys(human.joints, 0.15)),
-            BalanceLimit(self.base),
-        ]
+        self.limits = [*joint_limits(human, 0.15), BalanceLimit(self.base)]
         self.home = {side: self.palm(side) for side in SIDES}
         self.mouth = mink.FrameTask("mouth", "site", PALM_COST[0], 0.0)
         self.mouth.set_target_from_configuration(self.configuration)

@@ -10,7 +10,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import Measures, MeasuresError, estimate_measures
 from capar.body.human import Human, body_spec
-from capar.body.inverse_kinematics import DirectionTask, GroundTask, PointTask
+from capar.body.inverse_kinematics import DirectionTask, GroundTask, PointTask, joint_limits
 from capar.body.sensor_fitting import LARGEST_STEP, SOLVER
 from capar.body.skeleton import HIP_OF_SPINES, SHOULDER_BREADTH
 from capar.model.errors import CaparError
@@ -182,8 +182,7 @@ def _followed(
     tasks += [] if guidance.faces is None else [face]
     if not any(_on_leg(segment) for segment in segments):
         tasks += _stance(human, start, roams=_roams(targets))
-    speeds = dict.fromkeys(human.joints, LARGEST_STEP)
-    limits = [mink.ConfigurationLimit(human.model), mink.VelocityLimit(human.model, speeds)]
+    limits = joint_limits(human, LARGEST_STEP)
     configuration = mink.Configuration(human.model)
     out = np.empty((len(seen), len(start)))
     for frames in (range(best, len(out)), range(best - 1, -1, -1)):

@@ -12,7 +12,8 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import Measures, measures_of
 from capar.body.human import ROOT_SIZE, Human
-from capar.body.inverse_kinematics import DirectionTask, Solver
+from capar.body.inverse_kinematics import DirectionTask, Solver, joint_limits
+from capar.body.scripts import minimum_jerk
 from capar.body.sensors import (
     PLACEMENT_M,
     Calibration,
@@ -101,7 +102,7 @@ class RefinementError(CaparError):
     """A motion from which no measures can be estimated."""
 
 
-class Follower:
+class _Follower:
     """Inverse kinematics that keeps the sites of sensors on their targets."""
 
     def __init__(
@@ -117,22 +118,16 @@ class Follower:
         self.posture = mink.PostureTask(human.model, cost=self.posture_cost)
         self.posture.set_target(rest)
         self.damping = mink.DampingTask(human.model, cost=DAMPING_COST)
-        speeds = dict.fromkeys(human.joints, LARGEST_STEP)
-        self.limits = [
-            mink.ConfigurationLimit(human.model),
-            mink.VelocityLimit(human.model, speeds),
-        ]
+        self.limits = joint_limits(human, LARGEST_STEP)
         self.configuration = mink.Configuration(human.model)
         self.segments = [places()[place] for place in targets]
         legs_seen = any(segment.endswith(LOWER) for segment in self.segments)
         self.stance = [] if legs_seen else self._stance(rest)
 
     def _stance(self, rest: Float[np.ndarray, "posture"]) -> list[mink.Task]:
-        """Tasks of a body of which only the upper part is seen: it stands, wherever that is.
+        """Tasks of a body of whose legs nothing is seen: pelvis upright, feet flat as at rest.
 
-        The pelvis keeps upright, and the feet flat at the height at which they are in the
-        reference posture, on one spot if the sensors stay near; else a body that bends forward
-        would tilt as one piece.
+        They are on one spot if the sensors stay near. Else who bends forward would tilt as a piece.
         """
         self.configuration.update(rest)
         middle = np.mean([target.positions[:, :2] for target in self.targets.values()], axis=0)
@@ -149,25 +144,44 @@ class Follower:
         trunk = [] if on_trunk else [DirectionTask("thorax_upper", TRUNK_COST)]
         return [*standing, *trunk]
 
-    def run(
-        self, frames: range, start: Float[np.ndarray, "posture"], iterations: int
-    ) -> Float[np.ndarray, "frames posture"]:
-        """Postures at consecutive frames, from a posture near the first."""
+    def run(self, start: Float[np.ndarray, "posture"]) -> Float[np.ndarray, "frames posture"]:
+        """Postures at all frames, from a posture near the first."""
         self.configuration.update(start)
-        out = np.empty((len(frames), len(start)))
-        for row, frame in enumerate(frames):
-            self.aim(frame)
-            for _ in range(iterations if row else SETTLING):
-                self.step()
+        out = np.empty((len(next(iter(self.targets.values())).weights), len(start)))
+        for frame in range(len(out)):
+            self._aim(frame)
+            for _ in range(1 if frame else SETTLING):
+                self._step()
             self._catch_up()
-            out[row] = self.configuration.q
+            out[frame] = self.configuration.q
+        return out
+
+    def bridge(
+        self, motion: Float[np.ndarray, "frames posture"]
+    ) -> Float[np.ndarray, "frames posture"]:
+        """The motion with unseen hinges led from the one end of every loss to the other."""
+        faint = np.min([each.weights for each in self.targets.values()], axis=0) < 1.0
+        out = motion.copy()
+        for first, last in geometry.runs(faint):
+            ends = [max(first - 1, 0), min(last + 1, len(motion) - 1)]
+            if (
+                faint[ends[0]] or faint[ends[1]]
+            ):  # a loss at an end of the recording: hold the other
+                ends = ends[1:] * 2 if faint[ends[0]] else ends[:1] * 2
+            start, end = motion[ends[0]], motion[ends[1]]
+            self.configuration.update(start)
+            for frame in range(first, last + 1):
+                way = minimum_jerk((frame - first + 1) / (last - first + 2))
+                self.posture.set_target(start + way * (end - start))
+                self.posture.set_cost(self.posture_cost + self._unseen(frame) * BRIDGE_COST)
+                self._aim(frame)
+                for _ in range(2):
+                    self._step()
+                out[frame] = self.configuration.q
         return out
 
     def _catch_up(self) -> None:
-        """Go on in steps that never overshoot, where plain ones leave sensors far behind.
-
-        Plain steps overshoot at a straight limb, or at the end of a joint's range.
-        """
+        """Go on in steps that never overshoot, where plain ones leave sensors far behind."""
         if self._behind_m() < FAR_BEHIND_M:
             return
         tasks = [*self._seen(), *self.stance, self.posture]
@@ -186,7 +200,7 @@ class Follower:
         """Tasks of sensors that are not lost."""
         return [task for task in self.frames.values() if task.cost[0] > 0.0]
 
-    def aim(self, frame: int) -> None:
+    def _aim(self, frame: int) -> None:
         """Set every task to a frame's targets."""
         for place, task in self.frames.items():
             one = self.targets[place]
@@ -197,7 +211,7 @@ class Follower:
                 pose = np.concatenate([one.orientations[frame], one.positions[frame]])
                 task.set_target(mink.SE3(pose))
 
-    def blind(self, frame: int) -> Float[np.ndarray, "dofs"]:
+    def _unseen(self, frame: int) -> Float[np.ndarray, "dofs"]:
         """How little each hinge is seen at a frame: 1 between a lost sensor and the next seen."""
         model, out = self.human.model, np.zeros(self.human.model.nv)
         weights = {places()[place]: target.weights[frame] for place, target in self.targets.items()}
@@ -211,7 +225,7 @@ class Follower:
                     break
         return out
 
-    def step(self) -> None:
+    def _step(self) -> None:
         """One step of inverse kinematics."""
         tasks = [*self._seen(), *self.stance, self.posture, self.damping]
         velocity = mink.solve_ik(self.configuration, tasks, 1.0, SOLVER, limits=self.limits)
@@ -266,16 +280,13 @@ class Fit:
         return (angles <= low + LIMIT_MARGIN) | (angles >= high - LIMIT_MARGIN)
 
 
-def fit(
-    human: Human, streams: Mapping[str, Stream], calibration: Calibration, *, iterations: int = 1
-) -> Fit:
+def fit(human: Human, streams: Mapping[str, Stream], calibration: Calibration) -> Fit:
     """Fit the body to any subset of its sensors.
 
     Args:
         human: The body.
         streams: By place, as recorded, on one clock.
         calibration: Where they sit on it.
-        iterations: Of inverse kinematics a frame.
 
     Raises:
         FitError: No sensor is calibrated, or the clocks differ.
@@ -290,9 +301,8 @@ def fit(
             raise FitError(f"sensor {place!r} is on another clock; resample them to one")
     body = mounted(human, calibration.mounts)
     targets = {place: target(each) for place, each in known.items()}
-    follower = Follower(body, targets, calibration.posture)
-    motion = follower.run(range(len(clock)), calibration.posture, iterations)
-    motion = _bridge(follower, motion, iterations)
+    follower = _Follower(body, targets, calibration.posture)
+    motion = follower.bridge(follower.run(calibration.posture))
     seconds = time.perf_counter() - began
     sites = body.sites(motion, [f"sensor_{each}" for each in targets])
     metres, radians = {}, {}
@@ -305,30 +315,6 @@ def fit(
         {place: each.weights == 0.0 for place, each in targets.items()},
         metres, radians, seconds, {place: places()[place] for place in known},
     )  # fmt: skip
-
-
-def _bridge(
-    follower: Follower, motion: Float[np.ndarray, "frames posture"], iterations: int
-) -> Float[np.ndarray, "frames posture"]:
-    """The motion with unseen hinges led from the one end of every loss to the other."""
-    faint = np.min([each.weights for each in follower.targets.values()], axis=0) < 1.0
-    out = motion.copy()
-    for first, last in geometry.runs(faint):
-        ends = [max(first - 1, 0), min(last + 1, len(motion) - 1)]
-        if faint[ends[0]] or faint[ends[1]]:  # a loss at an end of the recording: hold the other
-            ends = ends[1:] * 2 if faint[ends[0]] else ends[:1] * 2
-        start, end = motion[ends[0]], motion[ends[1]]
-        follower.configuration.update(start)
-        for frame in range(first, last + 1):
-            share = (frame - first + 1) / (last - first + 2)
-            way = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)  # of minimum jerk
-            follower.posture.set_target(start + way * (end - start))
-            follower.posture.set_cost(follower.posture_cost + follower.blind(frame) * BRIDGE_COST)
-            follower.aim(frame)
-            for _ in range(iterations + 1):
-                follower.step()
-            out[frame] = follower.configuration.q
-    return out
 
 
 def worn(capture: Capture) -> dict[str, Stream]:
@@ -365,15 +351,9 @@ def fit_capture(capture: Capture, *, angles: Mapping[str, float] | None = None) 
 
 
 def fit_refined(human: Human, streams: Mapping[str, Stream], calibration: Calibration) -> Fit:
-    """Fit the body to its sensors; once more, with refined measures, if residuals ask for it.
+    """Fit the body to its sensors; again with refined measures where one is off by ``NOISE_M``.
 
-    They ask for it where some sensor's distance from its place exceeds ``NOISE_M``, the noise that
-    a filtered sensor has. The second fit is kept if its worst sensor fits better.
-
-    Args:
-        human: The body.
-        streams: By place, as recorded, on one clock.
-        calibration: Where they sit on it.
+    The second fit is kept if its worst sensor fits better.
 
     Raises:
         FitError: No sensor is calibrated, or the clocks differ.
@@ -402,9 +382,8 @@ def refine(
 ) -> tuple[Measures, Calibration]:
     """Functional calibration: limb lengths and places of sensors from a motion that was fitted.
 
-    Arm circles and a reach decide lengths that a reference posture cannot: where a limb is longer
-    than assumed, no posture fits all sensors at once. Lengths, the places of the sensors and the
-    postures of some frames are estimated together by Gauss-Newton steps, each from its prior.
+    Where a limb is longer than assumed, no posture fits all sensors at once. Lengths, places of the
+    sensors and postures of some frames are estimated by Gauss-Newton steps, each from its prior.
 
     Args:
         made: The motion fitted to the same sensors.
@@ -413,8 +392,7 @@ def refine(
         samples: How many frames take part.
 
     Returns:
-        The measures, each with its deviation after the motion was seen, and the calibration with
-        them.
+        The measures, with their deviations after the motion was seen, and the calibration.
 
     Raises:
         RefinementError: Fewer than ten frames have all the sensors.
@@ -429,7 +407,7 @@ def refine(
         covariance = estimate.step()
     after = {name: float(np.sqrt(covariance[n, n])) for n, name in enumerate(FREE)}
     deviations = {**made.human.measures.deviations, **after}
-    measures = _changed(estimate.measures, {}, deviations)
+    measures = replace(estimate.measures, deviations=deviations)
     return measures, Calibration(estimate.mounts, calibration.posture)
 
 
@@ -509,33 +487,27 @@ class _Estimate:
 
     def _priors(self) -> tuple[np.ndarray, np.ndarray]:
         """What is known beforehand: measures by survey or tape, sensors near their places."""
-        size = len(FREE) + 6 * len(self.targets)
-        rows, rest = [], []
+        free, size = len(FREE), len(FREE) + 6 * len(self.targets)
+        matrix = np.zeros((free + 3 * len(self.targets), size))
+        rest = np.zeros(len(matrix))
         for number, name in enumerate(FREE):
-            row = np.zeros(size)
-            row[number] = 1.0 / self.prior.deviations[name]
-            rows.append(row)
-            rest.append((self.measures[name] - self.prior[name]) / self.prior.deviations[name])
-        moves = {name: _nominal(self._varied(name)) for name in FREE}
-        usual = _nominal(self.measures)
+            matrix[number, number] = 1.0 / self.prior.deviations[name]
+            rest[number] = self.measures[name] - self.prior[name]
+            rest[number] /= self.prior.deviations[name]
+        moves = [_nominal(_longer(self.measures, {name: DELTA_M})) for name in FREE]
+        usual, turns = _nominal(self.measures), np.zeros(size)
         for number, place in enumerate(self.targets):
-            here = self.mounts[place].pose.translation - usual[place]
-            for axis in range(3):
-                row = np.zeros(size)
-                row[len(FREE) + 6 * number + axis] = 1.0 / PLACEMENT_M
-                for n, name in enumerate(FREE):
-                    row[n] = -(moves[name][place] - usual[place])[axis] / DELTA_M / PLACEMENT_M
-                rows.append(row)
-                rest.append(here[axis] / PLACEMENT_M)
-        matrix = np.array(rows)
-        turns = np.zeros(size)
-        for number in range(len(self.targets)):
-            turns[len(FREE) + 6 * number + 3 : len(FREE) + 6 * number + 6] = 1e-6
-        return matrix.T @ matrix + np.diag(turns), matrix.T @ np.array(rest)
+            rows = slice(free + 3 * number, free + 3 * number + 3)
+            column = free + 6 * number
+            matrix[rows, column : column + 3] = np.eye(3) / PLACEMENT_M
+            for n, moved in enumerate(moves):
+                matrix[rows, n] = -(moved[place] - usual[place]) / DELTA_M / PLACEMENT_M
+            rest[rows] = (self.mounts[place].pose.translation - usual[place]) / PLACEMENT_M
+            turns[column + 3 : column + 6] = 1e-6
+        return matrix.T @ matrix + np.diag(turns), matrix.T @ rest
 
     def _apply(self, change: np.ndarray) -> None:
-        values = {n: self.measures[n] + float(change[i]) for i, n in enumerate(FREE)}
-        self.measures = _changed(self.measures, values, self.measures.deviations)
+        self.measures = _longer(self.measures, dict(zip(FREE, change, strict=False)))
         for number, place in enumerate(self.targets):
             moved, turned = change[len(FREE) + 6 * number :][:6].reshape(2, 3)
             pose = self.mounts[place].pose
@@ -545,20 +517,18 @@ class _Estimate:
 
     def _by_measure(self, human: Human) -> dict[str, Float[np.ndarray, "samples 3 measures"]]:
         """Change of every sensor's place with every measure, by place."""
-        names = [f"sensor_{each}" for each in self.mounts]
-        base = human.sites(self.postures, names)
-        out = {place: np.empty((len(self.frames), 3, len(FREE))) for place in self.mounts}
-        for number, name in enumerate(FREE):
-            varied = mounted(Human.of(self._varied(name)), self.mounts)
-            moved = varied.sites(self.postures, names)
-            for place in self.mounts:
-                step = moved[f"sensor_{place}"][0] - base[f"sensor_{place}"][0]
-                out[place][:, :, number] = step / DELTA_M
-        return out
-
-    def _varied(self, name: str) -> Measures:
-        values = {name: self.measures[name] + DELTA_M}
-        return _changed(self.measures, values, self.measures.deviations)
+        sites = {place: f"sensor_{place}" for place in self.mounts}
+        base = human.sites(self.postures, sites.values())
+        moved = [
+            mounted(Human.of(_longer(self.measures, {name: DELTA_M})), self.mounts).sites(
+                self.postures, sites.values()
+            )
+            for name in FREE
+        ]
+        return {
+            place: np.stack([(each[site][0] - base[site][0]) / DELTA_M for each in moved], axis=2)
+            for place, site in sites.items()
+        }
 
 
 def _nominal(measures: Measures) -> dict[str, np.ndarray]:
@@ -567,8 +537,7 @@ def _nominal(measures: Measures) -> dict[str, np.ndarray]:
     return {place: np.array(model.site(f"sensor_{place}").pos) for place in places()}
 
 
-def _changed(
-    measures: Measures, values: Mapping[str, float], deviations: Mapping[str, float]
-) -> Measures:
-    changed = {**measures.values, **values}
-    return Measures(measures.sex, measures.age, changed, measures.given, deviations)
+def _longer(measures: Measures, by_m: Mapping[str, float]) -> Measures:
+    """The measures with some of them longer [m]."""
+    values = {name: measures[name] + float(more) for name, more in by_m.items()}
+    return replace(measures, values={**measures.values, **values})
