@@ -35,14 +35,9 @@ def is_right(name: str) -> bool:
 GIVEN_DEVIATION_M = 0.003
 """Deviation of a length that somebody measured [m]: what trained observers differ by."""
 
-STATURES_M = (0.9, 2.3)
-"""Statures for which estimates are made [m]."""
-
-GROWN = 18.0
-"""Age from which on the adults' tables hold [years]."""
-
-CHILD = 9.0
-"""Age of the children's table [years]."""
+STATURES_M = (0.9, 2.3)  # statures for which estimates are made [m]
+GROWN = 18.0  # age from which on the adults' tables hold [years]
+CHILD = 9.0  # age of the children's table [years]
 
 LEAST_TRUNK = 0.25
 """Least height of cervicale above the hips [share of stature]; 0.33 to 0.36 is usual."""

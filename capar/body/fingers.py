@@ -18,8 +18,7 @@ FINGERS, THUMB = ("index", "middle", "ring", "pinky", "little"), "thumb"
 PLACES = ("hand", "fingers", "thumb", "thumb_tip", "index_knuckle", "fifth_knuckle")
 """What names of joints of fingers are known as."""
 
-REACH_M = 0.25
-"""No joint of a finger is farther from the wrist than this [m]."""
+REACH_M = 0.25  # no joint of a finger is farther from the wrist than this [m]
 
 THUMB_SHARE = 0.8
 """A thumb begins nearer to the wrist than this share of the fingers' distance [1]; else its name is

@@ -7,8 +7,7 @@ from jaxtyping import Float
 from capar.body.human import Human
 
 EYES = ("right_pupil", "left_pupil")
-LOOK_COST = 4.0
-"""Weight of a radian that a line of sight misses its point by."""
+LOOK_COST = 4.0  # weight of a radian that a line of sight misses its point by
 
 SHARES = {"eye": 0.045, "head": 0.05, "neck": 0.05, "thorax": 0.7, "lumbar": 1.0}
 """Weight of a radian of each part that turns with the gaze: what costs more turns less."""

@@ -19,8 +19,7 @@ from capar.model.errors import CaparError, UnknownNameError
 ROOT, ROOT_SIZE = "root", 7
 """Name of the free joint, and numbers of a posture that place the pelvis: x y z [m] and w x y z."""
 
-ARMATURE = 0.01
-"""Added inertia of a hinge [kg m2], for simulations that step the model."""
+ARMATURE = 0.01  # added inertia of a hinge [kg m2], for simulations that step the model
 
 _KINDS = {
     "capsule": mujoco.mjtGeom.mjGEOM_CAPSULE,

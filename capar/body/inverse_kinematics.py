@@ -31,8 +31,7 @@ SOLE_M = 0.01
 MARGIN_M = 0.015
 """How far inside the edge of the base of support the centre of mass is kept [m] (estimate)."""
 
-EDGE_COST = 100.0
-"""Weight of a metre of the centre of mass beyond that margin."""
+EDGE_COST = 100.0  # weight of a metre of the centre of mass beyond that margin
 
 Points = Mapping[str, Float[np.ndarray, "frames 3"]]
 

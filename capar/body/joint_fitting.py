@@ -71,11 +71,8 @@ HEAD_BY_EYES, EARLY_SHARE = 0.3, 0.1
 """How much the head's joint counts where eyes are seen, and how much of their weight necks and
 heads have before it is known where on the body theirs are [1]."""
 
-SPINE_M = 0.05
-"""How far from the axis of its segment a joint of the spine may be [m]."""
-
-ROUNDS = 3
-"""Times that places are found anew from postures."""
+SPINE_M = 0.05  # how far from the axis of its segment a joint of the spine may be [m]
+ROUNDS = 3  # times that places are found anew from postures
 
 Local = Mapping[str, Float[np.ndarray, "3"]]
 

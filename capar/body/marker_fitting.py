@@ -41,8 +41,7 @@ LEAST_FRAMES, TRUST = 10, 0.1
 fit's centre against one frame's motion [1]: skin moves by half a centimetre or so, while first fits
 miss joints by about five."""
 
-ROUNDS = 2
-"""Times that the places of markers are found anew from postures, and postures from them."""
+ROUNDS = 2  # times that the places of markers are found anew from postures, and postures from them
 
 MIDDLE_WEIGHT, CLUSTER_WEIGHT, LARGE_CLUSTER = 0.2, 0.7, 4
 """Weights of the middle of a segment by the markers on it, and of markers whose places are found

@@ -37,8 +37,7 @@ a shift of gaze takes, the head's share included [s]."""
 STANDOFF_M, RISE_M = 0.07, 0.13
 """How far next to and above the straight path a hand comes to an object from outside [m]."""
 
-UP, OVER = 0.6, 0.75
-"""Shares of a reach in which the hand rises, and in which it goes forward [1]."""
+UP, OVER = 0.6, 0.75  # shares of a reach in which the hand rises, and in which it goes forward [1]
 
 RELEASE_S, FOLLOW_S = 0.48, 0.12
 """How long it takes after a drink until the head is free again, in the next phase, and how long a
@@ -47,8 +46,7 @@ hand swings on that let go of what it throws [s]."""
 ITERATIONS, GRIP_ITERATIONS = 3, 20
 """Of inverse kinematics for a frame, and for a grip that is tried."""
 
-RATE_HZ = 103.3
-"""Of the thesis's tracker (thesis 3.1) [Hz]."""
+RATE_HZ = 103.3  # of the thesis's tracker (thesis 3.1) [Hz]
 
 REACH_TOLERANCE_M, TOUCH_M = 0.003, 0.003
 """A palm further than the one from where it is to be cannot reach it; one nearer than the other to

@@ -43,8 +43,7 @@ SOLE_PLACES, SOLE_SHARE = ("heel", "second_metatarsal", "toe_tip"), 0.7
 """Places that keep above the ground by a share of their height above the sole [1]: a foot that
 rolls over its heel or toes has them nearer to it."""
 
-ROAMING_M = 0.5
-"""Who goes further than this on unseen legs is not taken to stand on one spot [m]."""
+ROAMING_M = 0.5  # who goes further than this on unseen legs is not taken to stand on one spot [m]
 
 SETTLING, ITERATIONS, LEAST_PLACES = 80, 3, 4
 """Iterations for the first frame and for the others; how many places fit a body at least."""
@@ -430,8 +429,7 @@ def _apart(first: np.ndarray, second: np.ndarray) -> float:
     return float(np.nanmedian(np.linalg.norm(first - second, axis=1)))
 
 
-SAMPLES = 60
-"""Frames by which sizes and places of markers are found."""
+SAMPLES = 60  # frames by which sizes and places of markers are found
 
 MIDDLE = {
     "c7", "t10", "sternum_top", "sternum_low", "sacrum", "head_top", "head", "neck", "pelvis",

@@ -22,8 +22,7 @@ pushed, and how thick the posts next to it are [m]."""
 DRAWER_M, BOARD_M = (0.36, 0.30, 0.12), 0.02
 """How deep, wide and high a drawer is, and how thick the boards of its chest are [m]."""
 
-GAP_M = 0.003
-"""Between what moves and what guides it [m]."""
+GAP_M = 0.003  # between what moves and what guides it [m]
 
 AIR_M, CLEAR_M, WRIST_OUT_M = 0.0005, 0.014, 0.022
 """What is left between palm and object, so that surfaces touch and do not cut; how far a hand at an

@@ -113,8 +113,7 @@ ACTIONS: dict[str, Script] = {
 """Each has the objects of its own scene. Those of thesis 5.2 are ``sip`` (DrinkFromMug), ``touch``
 (TouchCycle), ``touch_from_rest``, ``slide`` (SlideObject) and ``pick_up`` (PickUpWithBothHands)."""
 
-JOINT_ACTIONS = ("hand_over",)
-"""Those of two bodies."""
+JOINT_ACTIONS = ("hand_over",)  # those of two bodies
 
 
 def action_scene(human: Human, action: str) -> Scene:

@@ -11,14 +11,12 @@ from extractors.readers.names import SIDES as SIDES
 
 Vector = tuple[float, float, float]
 
-GRAVITY_MPS2 = np.array([0.0, 0.0, -9.81])
-"""Standard gravity, rounded [m/s^2]."""
+GRAVITY_MPS2 = np.array([0.0, 0.0, -9.81])  # standard gravity, rounded [m/s^2]
 
 THROWN_MPS: Vector = (0.0, 1.1, 1.4)
 """Velocity with which the right hand throws: to the left and upwards [m/s]."""
 
-SWINGS_S, FLIES_S, STOPS_S = 0.3, 0.3, 0.25
-"""How long a throw, the flight and the stop take [s]."""
+SWINGS_S, FLIES_S, STOPS_S = 0.3, 0.3, 0.25  # how long a throw, the flight and the stop take [s]
 
 THROW_FROM_M: Vector = (0.0, -0.08, 0.16)
 """From where the object stands to where the throw begins [m]."""

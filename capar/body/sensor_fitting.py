@@ -59,11 +59,8 @@ SETTLING, CATCHING_UP = 60, 20
 FAR_BEHIND_M = 0.02
 """A sensor farther than this from its place after the usual steps is left behind [m]."""
 
-LARGEST_STEP = 0.35
-"""Largest step of a hinge in one iteration [rad], whatever the recording's rate."""
-
-LIMIT_MARGIN = float(np.radians(0.1))
-"""A hinge this near its limit counts as at it [rad]."""
+LARGEST_STEP = 0.35  # largest step of a hinge in one iteration [rad], whatever the recording's rate
+LIMIT_MARGIN = float(np.radians(0.1))  # a hinge this near its limit counts as at it [rad]
 
 LOWER = ("pelvis", "thigh", "shank", "foot", "toes")
 """How the names of segments of the lower body end."""
@@ -80,8 +77,7 @@ FREE = (
 )  # fmt: skip
 """The measures that decide where joints are, and are estimated from a motion."""
 
-SAMPLES, ROUNDS = 60, 6
-"""Frames and Gauss-Newton steps by which they are."""
+SAMPLES, ROUNDS = 60, 6  # frames and Gauss-Newton steps by which they are
 
 NOISE_M, NOISE_RAD = 0.002, float(np.radians(0.7))
 """Deviations of a filtered sensor's pose, soft tissue included [m] and [rad]."""
@@ -90,8 +86,7 @@ REFERENCE_RAD, LOOSE_RAD = float(np.radians(1.5)), 1.0
 """Deviations of a hinge from the reference posture that somebody takes up, and from standing during
 the motion [rad]."""
 
-DELTA_M = 1e-4
-"""Step of finite differences [m]."""
+DELTA_M = 1e-4  # step of finite differences [m]
 
 
 class FitError(CaparError):

@@ -16,8 +16,7 @@ from capar.model.errors import CaparError, UnknownNameError
 from extractors.signals.filters import fill_gaps, lowpass, lowpass_orientations
 from extractors.thresholds import Thresholds
 
-REFERENCE_S = 0.4
-"""How long the reference posture is held at the start [s] (thesis 3.1)."""
+REFERENCE_S = 0.4  # how long the reference posture is held at the start [s] (thesis 3.1)
 
 PLACEMENT_M = 0.010
 """Deviation of where a sensor is strapped from its nominal place, an axis [m] (estimate)."""
@@ -199,8 +198,7 @@ class Tracker:
                 raise CaparError(f"{name} = {value}; a tracker's faults are not negative")
 
 
-PERFECT = Tracker(0.0, 0.0, 0.0, 0.0)
-"""A tracker without faults."""
+PERFECT = Tracker(0.0, 0.0, 0.0, 0.0)  # a tracker without faults
 
 
 def strap_on(

@@ -17,8 +17,7 @@ SPINE = {
 }
 """Where the spine bends, from the sacrum (0) to cervicale (1): L5/S1, L3/4, T12/L1, T6/7."""
 
-SACRUM_ABOVE_HIPS = 0.045
-"""Height of L5/S1 above the hip joints [share of stature] (estimate)."""
+SACRUM_ABOVE_HIPS = 0.045  # height of L5/S1 above the hip joints [share of stature] (estimate)
 
 SHOULDER_BELOW_ACROMION = 0.0265
 """Depth of the shoulder's centre below the acromion [share of stature]."""
@@ -29,13 +28,11 @@ SHOULDER_BREADTH = 0.92
 HIP_OF_SPINES = 0.36
 """Distance of a hip joint from the midline, of the breadth between the spines (Bell 1990) [1]."""
 
-HEAD_BELOW_EYES = 0.013
-"""Depth of the head's joint below the eyes [share of stature] (estimate)."""
+HEAD_BELOW_EYES = 0.013  # depth of the head's joint below the eyes [share of stature] (estimate)
 
 DOWN = np.array([0.0, 0.0, -1.0])
 
-HEEL = 0.26
-"""How far the heel lies behind the ankle [share of the foot's length] (estimate)."""
+HEEL = 0.26  # how far the heel lies behind the ankle [share of the foot's length] (estimate)
 
 BALL = 0.47
 """How far the ball of the foot lies before the ankle [share of the foot's length] (estimate)."""
@@ -127,8 +124,7 @@ def _right_side(m: Measures) -> list[Segment]:
 
 
 LIMBS = ("upper_arm", "forearm", "hand", "thigh", "shank", "foot")
-TRUNK = ("lower_trunk", "middle_trunk", "upper_trunk")
-"""From the hips upwards."""
+TRUNK = ("lower_trunk", "middle_trunk", "upper_trunk")  # from the hips upwards
 
 HOLDERS = {
     "upper_trunk": "thorax_upper",
@@ -138,8 +134,7 @@ HOLDERS = {
 }
 """The segment that a small part's mass is taken from."""
 
-LEAST_MOMENT = 1e-7
-"""Smallest moment of inertia about any axis [kg m2], for eyes and finger tips."""
+LEAST_MOMENT = 1e-7  # smallest moment of inertia about any axis [kg m2], for eyes and finger tips
 
 _Rows = dict[str, dict[str, Any]]
 _Vector = Float[np.ndarray, "3"]

@@ -5,8 +5,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Protocol, TypeVar
 
-MOST_LISTED = 20
-"""So many names that exist are all listed; of more, the nearest and their number."""
+MOST_LISTED = 20  # so many names that exist are all listed; of more, the nearest and their number
 
 NEAREST = 5
 

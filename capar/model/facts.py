@@ -14,8 +14,7 @@ import clingo
 from capar.model.capture import NAME
 from capar.model.errors import FactError
 
-LARGEST = 2**31 - 1
-"""The largest integer of the solver, which wraps silently beyond."""
+LARGEST = 2**31 - 1  # the largest integer of the solver, which wraps silently beyond
 
 
 @dataclass(frozen=True, slots=True, order=True)

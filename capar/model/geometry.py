@@ -20,11 +20,8 @@ Places: TypeAlias = Float[np.ndarray, "frames 3"]
 Turns: TypeAlias = Float[np.ndarray, "frames 4"]
 """Unit quaternions w x y z, body to world, at every frame; NaN where lost."""
 
-UNIT_TOLERANCE = 0.01
-"""How far a quaternion's norm may lie from one before it is an error [1]."""
-
-ROUNDING = 1e-15
-"""How far from one rounding leaves the norm of a quaternion that was scaled [1]."""
+UNIT_TOLERANCE = 0.01  # how far a quaternion's norm may lie from one before it is an error [1]
+ROUNDING = 1e-15  # how far from one rounding leaves the norm of a quaternion that was scaled [1]
 
 
 def rotations(quaternions: Float[np.ndarray, "*frames 4"]) -> "Rotation":

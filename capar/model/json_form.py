@@ -16,8 +16,7 @@ from capar.model.notices import Notice, read_notice
 from capar.model.observation import Observation
 from capar.model.par import ComplexPar, Ipar, Upar
 
-SCHEMA = 3
-"""The version that this program reads and writes, the field ``schema`` of an observation."""
+SCHEMA = 3  # the version that this program reads and writes, the field ``schema`` of an observation
 
 
 Value: TypeAlias = Observation | ComplexPar | Upar | Ipar | Calibration

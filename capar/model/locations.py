@@ -11,11 +11,8 @@ from jaxtyping import Float
 from capar.model import geometry
 from capar.model.errors import ParError
 
-NO_EXTENT_M = 1e-6
-"""A size below this is none [m]."""
-
-ACROSS = 1
-"""The axis (y) across an object's plane that parts its left (+y) from its right."""
+NO_EXTENT_M = 1e-6  # a size below this is none [m]
+ACROSS = 1  # the axis (y) across an object's plane that parts its left (+y) from its right
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -129,11 +126,8 @@ class GuideLocation:
     """Root mean square of how far its poses are off the fitted line, turning included [m]."""
 
 
-UNIT_M = 1e-4
-"""Places are kept to this [m]."""
-
-LOST = np.iinfo(np.int32).min
-"""What a coordinate is while the body was lost."""
+UNIT_M = 1e-4  # places are kept to this [m]
+LOST = np.iinfo(np.int32).min  # what a coordinate is while the body was lost
 
 
 @dataclass(frozen=True, slots=True)

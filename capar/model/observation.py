@@ -79,8 +79,7 @@ class ForceStyle:
 BOTH = {"hand": "hands", "foot": "feet"}
 """End-effectors of which a body has two, and what both are called."""
 
-MOST_SHOWN = 240
-"""So many letters of segments' names are shown in one line."""
+MOST_SHOWN = 240  # so many letters of segments' names are shown in one line
 
 
 @dataclass(frozen=True, slots=True, order=True)

@@ -7,11 +7,8 @@ from enum import StrEnum
 from capar.model.errors import ParError
 from capar.model.locations import Nlt as Nlt
 
-ACTION_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
-"""What a primitive may be called: ``MoveObjTo``."""
-
-UNKNOWN = "Unknown"
-"""The name of a segment whose features no rule covers."""
+ACTION_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")  # what a primitive may be called: ``MoveObjTo``
+UNKNOWN = "Unknown"  # the name of a segment whose features no rule covers
 
 
 @dataclass(frozen=True, slots=True, order=True)
