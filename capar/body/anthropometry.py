@@ -120,18 +120,16 @@ def estimate_measures(
     percentile: float | None = None,
     given: Mapping[str, float] | None = None,
 ) -> Measures:
-    """The measures of a person, those that are not given estimated by regression on stature.
+    """The measures of a person, those not given estimated by regression on stature.
 
     Args:
         sex: ``male`` or ``female``.
-        age: Years, from 6 up; between 9 and 18 the child's and the adult's tables are blended,
-            below 9 the child's proportions are kept.
+        age: Years, from 6 up; between 9 and 18 the child's and the adult's tables are blended.
         percentile: Of stature among persons of that sex and age, where no stature is given.
         given: Any measures that are known [m, kg].
 
     Raises:
-        MeasuresError: They are of no body, or both stature and percentile are given.
-        UnknownNameError: A measure has no such name.
+        MeasuresError, UnknownNameError: Measures of no body, or unknown ones.
     """
     known = dict(given or {})
     _check(sex, age, percentile, known)
@@ -158,11 +156,7 @@ def measure_names() -> tuple[str, ...]:
 
 
 def ready_made(name: str) -> Measures:
-    """The adult ``man``, the adult ``woman`` or the nine-year-old ``child``, of median stature.
-
-    Raises:
-        UnknownNameError: There is no such agent.
-    """
+    """The adult ``man`` or ``woman`` or the nine-year-old ``child``, of median stature."""
     kinds = {"man": ("male", 30.0), "woman": ("female", 30.0), "child": ("male", CHILD)}
     if name not in kinds:
         raise UnknownNameError("ready-made agent", name, kinds)
@@ -176,11 +170,7 @@ def ready_made(name: str) -> Measures:
 
 
 def measures_of(agent: Agent) -> Measures:
-    """The measures of a capture's performer: the kind of person, and what is stated of it.
-
-    Raises:
-        MeasuresError: The stated measures are of no body.
-    """
+    """The measures of a capture's performer: the kind of person, and what is stated of it."""
     kind = agent.kind if agent.kind in {"man", "woman", "child"} else "man"
     sex = "female" if kind == "woman" else "male"
     age = CHILD if kind == "child" else 30.0

@@ -82,10 +82,7 @@ class Places:
 
 
 def whole_body(place: str | Path) -> Places | None:
-    """The joints or markers of the body that most names of a capture's files are of.
-
-    None if there are too few of a body at known places.
-    """
+    """The joints or markers of the body most of a capture's names are of; None if too few."""
     best: Places | None = None
     files, start_s = files_of(place)
     for file in files.values():
@@ -107,8 +104,7 @@ def whole_body(place: str | Path) -> Places | None:
 def _places_it(names: dict[str, BodyName], markers: set[str]) -> bool:
     """Whether enough names are of a body's markers, or of its joints by a convention.
 
-    Trackers that are strapped on are called by words that are in conventions too, such as
-    ``right_hand`` and ``right_knee``; but by few of each.
+    Names of strapped-on trackers, such as ``right_knee``, are in conventions too, but few of each.
     """
     known = {each.place for name, each in names.items() if name in markers}
     if len(known) >= LEAST_EXACT:
@@ -119,13 +115,7 @@ def _places_it(names: dict[str, BodyName], markers: set[str]) -> bool:
 
 
 def fit_body(place: str | Path, capture: Capture) -> Fit:
-    """The body of a capture's performer, fitted to all that its files hold of it.
-
-    Joints and markers of a whole body are followed where there are any; else the sensors are.
-
-    Args:
-        place: Where the capture is described.
-        capture: The same, read.
+    """The body of a capture's performer, fitted to its joints or markers, else to its sensors.
 
     Raises:
         CaparError: Neither joints, markers nor sensors place a body.
@@ -154,13 +144,7 @@ def _faces(
 
 
 def fit_warnings(place: str | Path, capture: Capture, made: Fit) -> list[str]:
-    """What does not suit the body, each with what a user can do about it (``WARNINGS``).
-
-    Args:
-        place: Where the capture is described.
-        capture: The same, read.
-        made: The body fitted to it.
-    """
+    """What does not suit the body, each with what a user can do about it (``WARNINGS``)."""
     found = whole_body(place)
     floor = ground(capture)
     lower = np.minimum(*(made.human.sites(made.motion, [s])[s][0][:, 2] for s in SOLES))
@@ -231,12 +215,7 @@ def ground(capture: Capture) -> float | None:
 
 
 def fit_places(found: Places, *, ground_m: float | None = None) -> Fit:
-    """The body fitted to joints or markers.
-
-    Args:
-        found: Where they are.
-        ground_m: Height of the ground on which feet stand, where it is known [m].
-    """
+    """The body fitted to joints or markers; feet stand on a ground of known height [m]."""
     began = time.perf_counter()
     made = _followed(found, ground_m)
     motion = closed_hands(made.human, made.motion, found.points, found.names)
@@ -261,15 +240,10 @@ def _followed(found: Places, ground_m: float | None) -> PointFit:
 
 
 def with_body_parts(capture: Capture, made: Fit) -> Capture:
-    """The capture with parts of its performer's body as objects that are touched.
+    """The capture with head and feet of the fitted body as SELF objects that are touched.
 
-    The head and the feet become SELF objects, unless the capture has an object of that name, an
-    end-effector is there, or nothing of them was recorded. Hands without a shape get that of the
-    fitted body. The tolerance of contact is then ``FITTED_M`` or larger.
-
-    Args:
-        capture: What was recorded.
-        made: The body fitted to it.
+    Parts that the capture has, or of which nothing was recorded, are not added. Hands without a
+    shape get that of the body. The tolerance of contact is then ``FITTED_M`` or larger.
     """
     nearest = np.abs(made.times[None] - capture.times[:, None]).argmin(axis=1)
     own = [each for each in capture.sensors if capture.agent_of(each) == capture.agent.name]

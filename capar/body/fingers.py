@@ -34,17 +34,10 @@ def closed_hands(
     points: Points,
     names: Mapping[str, BodyName],
 ) -> Float[np.ndarray, "frames posture"]:
-    """The same motion with hands closed as their fingers are recorded; without these, as they are.
+    """The motion [frames posture] with hands closed as the joints of their fingers are recorded.
 
     The fingers of this body bend as one, by the median of the recorded ones: at the knuckles by the
-    direction of their first bone in the hand, at the middle joints by that of the second against
-    it. Fingers of which only knuckles are recorded do not count.
-
-    Args:
-        human: The body.
-        motion: Its postures, hands turned as recorded.
-        points: By name, in the world [m]; NaN where lost.
-        names: What the names mean.
+    direction of their first bone in the hand, at the middle joints by that of the second.
     """
     out = motion.copy()
     for side in SIDES:

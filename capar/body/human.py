@@ -31,9 +31,7 @@ _KINDS = {
 def body_spec(measures: Measures, *, prefix: str = "") -> mujoco.MjSpec:
     """The specification of a body standing on z = 0, looking along x, its arms down.
 
-    Args:
-        measures: Of whom.
-        prefix: Put before every name, so that several bodies share a scene.
+    Every name is led by a prefix, so that several bodies share a scene.
     """
     spec = mujoco.MjSpec()
     spec.modelname = f"{prefix}body"
@@ -154,11 +152,7 @@ class Human:
         return np.array(self.model.jnt_range[1:])
 
     def index(self, joint: str) -> int:
-        """Where a hinge's angle stands in a posture.
-
-        Raises:
-            UnknownNameError: There is no such hinge.
-        """
+        """Where a hinge's angle stands in a posture."""
         if joint not in self.joints:
             raise UnknownNameError("joint", joint, self.joints)
         return ROOT_SIZE + self.joints.index(joint)
@@ -170,12 +164,9 @@ class Human:
         place: Iterable[float] = (0.0, 0.0, 0.0),
         heading: float = 0.0,
     ) -> Float[np.ndarray, "posture"]:
-        """The standing posture with some hinges turned.
+        """The standing posture with some hinges turned [rad].
 
-        Args:
-            angles: By hinge [rad]; the others are zero.
-            place: Where the standing body's feet are [m].
-            heading: Which way it looks, from x towards y [rad].
+        The feet are at a place [m]; the heading is from x towards y [rad].
 
         Raises:
             PostureError: An angle is out of its hinge's range.
@@ -205,11 +196,7 @@ class Human:
     def sites(
         self, motion: Float[np.ndarray, "frames posture"], names: Iterable[str]
     ) -> dict[str, tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 4"]]]:
-        """World places [m] and orientations (w x y z) of sites or segments along a motion.
-
-        Raises:
-            UnknownNameError: The body has no such site or segment.
-        """
+        """World places [m] and orientations (w x y z) of sites or segments along a motion."""
         getters = {name: self.frame(name) for name in names}
         data = mujoco.MjData(self.model)
         places = {name: np.empty((len(motion), 3)) for name in getters}

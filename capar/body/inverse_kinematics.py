@@ -47,9 +47,8 @@ def joint_limits(
 class Solver:
     """Steps towards what tasks want, within the joints' ranges, shortened where they overshoot.
 
-    A plain step of the quadratic programme overshoots at a straight limb or at the end of a joint's
-    range, and goes to and fro for ever. Here a step that makes the weighted errors larger is taken
-    back and a shorter one is tried, as in a trust region (Nocedal & Wright 2006, chapter 4).
+    Plain steps overshoot at a straight limb or at the end of a range. One that makes the weighted
+    errors larger is undone and a shorter one tried (trust region; Nocedal & Wright 2006, ch. 4).
     """
 
     def __init__(
@@ -82,11 +81,7 @@ class Solver:
         self.radius = self.longest_rad
 
     def step(self, configuration: mink.Configuration) -> Float[np.ndarray, "dofs"]:
-        """Go one step, or stay and take shorter steps from now on.
-
-        Returns:
-            What was gone [rad], of the pelvis [m] and [rad].
-        """
+        """Take one step [rad, m], or stay (zeros) and take shorter steps from now on."""
         before, posture = self.error(configuration), configuration.q.copy()
         self.speed.limit = np.full(len(self.human.joints), self.radius)
         velocity = mink.solve_ik(configuration, self.tasks, 1.0, "daqp", limits=self.limits)
@@ -113,23 +108,10 @@ class Solver:
 
 
 class PointTask(mink.Task):
-    """Draws sites and segments' origins to points, whichever way they turn.
-
-    It is what a frame task of each place without a cost of orientation is, in one Jacobian: with
-    forty markers that is ten times as fast.
-    """
+    """Draws sites and segments to points, however they turn: many frame tasks in one Jacobian."""
 
     def __init__(self, human: Human, places: Sequence[str], costs: Sequence[float]) -> None:
-        """Set up the task.
-
-        Args:
-            human: The body.
-            places: Sites or segments.
-            costs: Weight of a metre of each.
-
-        Raises:
-            UnknownNameError: The body has no such place.
-        """
+        """Set up the task for sites or segments, each with the weight of a metre."""
         self._frames = [human.frame(place) for place in places]
         self._rows = np.repeat(np.asarray(costs, dtype=float), 3)
         super().__init__(cost=self._rows)
@@ -161,12 +143,7 @@ class PointTask(mink.Task):
 def standing_flat(points: Points, places: Mapping[str, str]) -> dict[str, Bool[np.ndarray, "f"]]:
     """By side, the frames in which a foot stands flat; sides of which no foot is seen are left out.
 
-    Heel and toe are both at their lowest only on a foot that stands flat, on the ground as on the
-    belt of a treadmill.
-
-    Args:
-        points: By name [m], z up; NaN where lost.
-        places: The place on the body of each.
+    Heel and toe are both at their lowest only on a foot that stands flat.
     """
     out = {}
     for side in SIDES:
@@ -189,13 +166,7 @@ class GroundTask(mink.Task):
     """Keeps places on feet out of the ground; above it they are free."""
 
     def __init__(self, model: mujoco.MjModel, places: Mapping[str, float], cost: float) -> None:
-        """Set up the task.
-
-        Args:
-            model: The body's.
-            places: Sites, each with the height that it may not be below [m].
-            cost: Weight of a metre.
-        """
+        """Set up the task for sites with their least heights [m]; ``cost`` is of a metre."""
         super().__init__(cost=np.full(len(places), cost))
         self._sites = [model.site(name).id for name in places]
         self._heights = np.array(list(places.values()))
@@ -218,19 +189,10 @@ class GroundTask(mink.Task):
 
 
 class DirectionTask(mink.Task):
-    """Points a segment's own axis in a direction, however the segment is turned about it.
-
-    Unless told otherwise it keeps the z axis upright, whichever way the segment faces.
-    """
+    """Points a segment's axis in a direction, however the segment turns about it."""
 
     def __init__(self, segment: str, cost: float, axis: Sequence[float] = (0.0, 0.0, 1.0)) -> None:
-        """Set up the task, which aims upwards.
-
-        Args:
-            segment: Name of the body.
-            cost: Weight of a radian.
-            axis: In the segment's frame [1].
-        """
+        """Aim upwards; ``cost`` is of a radian, the axis in the segment's frame."""
         super().__init__(cost=np.full(2, cost))
         self.segment = segment
         self._across = null_space(np.array([axis], dtype=float)).T
@@ -275,20 +237,12 @@ class Support:
     """The mean of the hull's corners [m]."""
 
     def outside(self, places: Float[np.ndarray, "*places 2"]) -> Float[np.ndarray, "*places"]:
-        """How far places are beyond an edge, at worst [m]; negative inside.
-
-        Beside a corner this is less than the distance from the corner.
-        """
+        """How far places are beyond an edge, at worst [m]; negative inside."""
         return np.asarray((places @ self.normals.T - self.offsets).max(axis=-1))
 
 
 def support(human: Human, ankles: Mapping[str, RigidTransform]) -> Support:
-    """The base of support.
-
-    Args:
-        human: Who stands.
-        ankles: ``T_world_foot`` of each foot that bears weight, by side; one at least.
-    """
+    """The base of support, from ``T_world_foot`` of each foot that bears weight, by side."""
     corners = [pose.apply(sole(human, side))[:, :2] for side, pose in ankles.items()]
     hull = ConvexHull(np.concatenate(corners))
     edges = np.unique(hull.equations.round(9), axis=0)
@@ -313,10 +267,7 @@ def standing_support(human: Human, posture: Float[np.ndarray, "posture"]) -> Sup
 
 
 class BalanceLimit(mink.Limit):
-    """The centre of mass does not go beyond the base of support, less a margin.
-
-    One that is beyond it already goes no further; ``BalanceTask`` draws it back.
-    """
+    """The centre of mass stays over the base less a margin, or goes no further if outside."""
 
     def __init__(self, base: Support, *, margin_m: float = MARGIN_M) -> None:
         self.base, self.margin_m = base, margin_m

@@ -87,17 +87,15 @@ def fit_joints(
 ) -> PointFit:
     """Fit the body to joints or key points in a world whose z axis points up.
 
-    Hands and heads of which three points are seen are turned as these are. Where skeletons have
-    their toes, necks, spines and other heads differs. They begin where the body has its own; then
-    each is where it is on its segment in the median of the fitted postures, in which feet that
-    stand are flat. A foot points to its toes.
+    Hands and heads of which three points are seen are turned as these are. Toes, necks, spines and
+    other heads, which skeletons have at different places, begin where the body has its own; then
+    each is where it is on its segment in the median of the fitted postures.
 
     Args:
         points: By foreign name [m]; NaN where lost.
         convention: What the names mean.
         ground_m: Height of the ground on which feet stand, where it is known [m].
-        stated: Places on the body of names that the convention lacks, or has otherwise. They are
-            left out if those on one hand or on the head do not move as one.
+        stated: Places of names that the convention lacks or has otherwise, if they move as one.
         faces: Directions in the world in which the face looks [1], where they are known.
 
     Raises:
@@ -153,10 +151,7 @@ def _weight(convention: Convention, place: str, places: Mapping[str, str]) -> fl
 def _believed(
     points: Points, named: Mapping[str, str], stated: Mapping[str, str]
 ) -> dict[str, str]:
-    """Places by a convention and as a capture states them, if the points of each part are rigid.
-
-    Else the stated ones are of another take, and are left out.
-    """
+    """Places as a convention has and a capture states them; the latter if each part is rigid."""
     both = {**named, **stated}
     for part in {part_of(place) for place in stated.values()}:
         own = [points[name] for name, place in both.items() if part_of(place) == part]
@@ -166,11 +161,7 @@ def _believed(
 
 
 def _early(name: str, names: Mapping[str, BodyName], places: Mapping[str, str]) -> float:
-    """How much of its weight a point has until places on spine, neck and head are found [1].
-
-    Skeletons have the joints of spines anywhere; those of heads and necks differ by centimetres,
-    but eyes do not.
-    """
+    """How much of its weight a point has until places on spine, neck and head are found [1]."""
     place = names[name].place
     if parts().get(without_side(place)) in {"trunk", "pelvis"} and place != "neck":
         return 0.0
@@ -206,11 +197,7 @@ def _eyes_higher_m(made: PointFit, points: Points, places: Mapping[str, str]) ->
 
 
 def _anatomical(local: Local, places: Mapping[str, str]) -> dict[str, Float[np.ndarray, "3"]]:
-    """Places on segments, where a body can have them.
-
-    Those of toes are straight ahead of the ankle, as a foot points to its toes; those of the spine
-    are in the trunk, also of somebody who bends throughout and whose spine is recorded otherwise.
-    """
+    """Places where a body can have them: toes straight ahead, joints of the spine in the trunk."""
     out = {}
     for name, spot in local.items():
         place, aside = without_side(places[name]), 1.0
@@ -230,12 +217,6 @@ def rigid_places(
     """Where points of hands and head are in the frame of ``part_of`` their place [m], by name.
 
     A hand hangs on its wrist, a head on its eyes, or on its joint where eyes are not seen.
-
-    Args:
-        human: The body.
-        points: By name, in the world [m]; NaN where lost.
-        places: The place on the body of each.
-        faces: Directions in which the face looks [1], where they are known.
     """
     out: dict[str, Float[np.ndarray, "3"]] = {}
     heads = [name for name, place in places.items() if place == "head"]
@@ -290,10 +271,7 @@ def _laid(
     usual: Float[np.ndarray, "points 3"],
     places: Sequence[str],
 ) -> Float[np.ndarray, "points 3"]:
-    """A shape turned as the body has its places, and moved to where it hangs.
-
-    Of the face only its direction counts.
-    """
+    """A shape turned as the body has its places and moved to where it hangs."""
     held = [place.endswith("_eye") for place in places]
     if not any(held):
         held = [place in {"head", "right_hand", "left_hand"} for place in places]

@@ -88,19 +88,15 @@ USUAL_SHARE = (0.8, 1.25)
 def fit_markers(
     points: Points, names: Mapping[str, BodyName], *, ground_m: float | None = None
 ) -> PointFit:
-    """Fit the body to markers in a world whose z axis points up.
+    """Fit the body to markers in a world whose z axis points up; each has a site ``marker_<name>``.
 
-    The size comes from distances of landmarks, what they do not tell from the stature that the
-    heights of all markers show. Markers begin where landmarks usually are; then each one's place on
-    its segment is the one where it is in the median of the fitted postures.
+    The size comes from distances of landmarks and from the stature that all heights show. Markers
+    begin where landmarks usually are; then each is where it is on its segment in the median.
 
     Args:
         points: By name [m]; NaN where lost.
         names: What the names mean; points of no name are ignored.
         ground_m: Height of the ground on which feet stand, where it is known [m].
-
-    Returns:
-        The fit; every marker has its site ``marker_<name>`` on the body.
 
     Raises:
         SkeletonError: Too few markers are at known places, or none three of them at once.
@@ -187,11 +183,7 @@ Cluster = tuple[Bool[np.ndarray, "frames"], RigidTransform]
 
 
 def cluster_of(points: Sequence[Float[np.ndarray, "frames 3"]]) -> Cluster | None:
-    """Markers as a rigid body; None if they are too few, or never seen at once.
-
-    Args:
-        points: Of markers on one segment, in the world [m]; NaN where lost.
-    """
+    """Markers on one segment [m] as a rigid body; None if too few, or never seen at once."""
     if len(points) < LEAST_MARKERS:
         return None
     stack = np.stack(points, axis=1)
@@ -209,18 +201,9 @@ def joint_centre(
 ) -> Float[np.ndarray, "frames 3"] | None:
     """Where the joint between two clusters is in the world [m]; NaN where one of them is not seen.
 
-    Two rigid clusters on both sides of a joint have one point in common that keeps its place in
-    both: the joint's centre (symmetrical centre of rotation estimation; Ehrig et al. 2006, J
-    Biomech 39:2798). Where a joint hardly turns, or only about one axis, the motion leaves it open
-    along that; there the centre stays where a first fit has it.
-
-    Args:
-        first: On one side of the joint.
-        second: On the other.
-        guess: Where a first fit has it [m].
-
-    Returns:
-        None if both are hardly ever seen at once.
+    It keeps its place in both (symmetrical centre of rotation estimation; Ehrig et
+    al. 2006, J Biomech 39:2798). Along axes about which the joint hardly turns it stays where a
+    first fit has it, the guess. None if both are hardly ever seen at once.
     """
     both = first[0] & second[0] & np.isfinite(guess).all(axis=1)
     frames = int(both.sum())

@@ -115,15 +115,7 @@ def perform(
     heading: float = 0.0,
     rate_hz: float = RATE_HZ,
 ) -> Performance:
-    """Let a body do a script in a scene.
-
-    Args:
-        human: Of any size.
-        scene: Any that its hands can reach.
-        script: What it does.
-        place: Where it stands [m].
-        heading: Which way it faces [rad].
-        rate_hz: Frames a second.
+    """Let a body do a script in a scene, standing at a place [m] and facing a heading [rad].
 
     Raises:
         PerformanceError: A hand cannot come where it is to be; the message says by how much.
@@ -136,15 +128,7 @@ def perform(
 def perform_together(
     scene: Scene, roles: Sequence[Role], *, rate_hz: float
 ) -> dict[str, Performance]:
-    """Let bodies do their scripts in one scene, where the objects are the same for all.
-
-    Args:
-        scene: With what all of them handle.
-        roles: Who does what; in a phase only one of them moves an object.
-        rate_hz: Frames a second.
-
-    Returns:
-        The performance of each, by the agent's name.
+    """Let bodies do their scripts in one scene; in a phase only one of them moves an object.
 
     Raises:
         PerformanceError: A hand cannot come where it is to be; the message says by how much.
@@ -305,10 +289,7 @@ class Actor:
     def _effort(
         self, side: str, grip: RigidTransform, ends: list[tuple[RigidTransform, bool]], least: float
     ) -> float:
-        """How far the body is from ease with a grip, at worst; what it misses weighs most.
-
-        What is at least as far as with another grip, which is given, is not sought further.
-        """
+        """How far the body is from ease with a grip, at worst, or more than another's."""
         worst = 0.0
         for end, drinks in ends:
             self.configuration.update(self.rest)

@@ -224,10 +224,7 @@ def _on_leg(segment: str) -> bool:
 
 
 def _hanging(segments: Collection[str]) -> list[mink.Task]:
-    """Tasks that let arms hang and keep a head upright of which nothing is seen.
-
-    They do so whichever way the trunk leans.
-    """
+    """Tasks that let arms hang and keep a head upright of which nothing is seen."""
     arms: list[mink.Task] = [
         DirectionTask(f"{side}_upper_arm", HANGING_COST)
         for side in SIDES
@@ -256,10 +253,9 @@ def _roams(targets: Float[np.ndarray, "frames points 3"]) -> bool:
 
 
 def _stance(human: Human, start: Float[np.ndarray, "posture"], *, roams: bool) -> list[mink.Task]:
-    """Tasks of a body of whose legs nothing is seen: it stands, its pelvis upright.
+    """Tasks of a body of whose legs nothing is seen: pelvis upright, feet flat as at first.
 
-    The feet are flat at the height at which they are in the first posture, on one spot if the body
-    stays there; else whoever bends forward would tilt as one piece.
+    They are on one spot unless it roams. Else who bends forward would tilt as one piece.
     """
     upright = np.array(start)
     w, _, _, z = start[3:7] / np.linalg.norm(start[3:7])
@@ -311,12 +307,6 @@ def measures_from_points(
 ) -> Measures:
     """Measures that a skeleton's own bones have, the stature from the sum of its limbs.
 
-    Args:
-        points: By name [m]; NaN where lost.
-        named: The place on the body of each name.
-        sex: ``male`` or ``female``.
-        age: Years.
-
     Raises:
         SkeletonError: None of the limbs has both its joints.
     """
@@ -346,12 +336,9 @@ def trunk_share(
     body: Human,
     ends: tuple[str, str] = TRUNK,
 ) -> float | None:
-    """Likely length of somebody's trunk as a share of a body's [1]; None where it is not seen.
+    """Likely length of a trunk as a share of that of a body of its stature [1]; None if not seen.
 
-    Args:
-        places: Joints and landmarks by the body's own names for them.
-        body: Of the same stature.
-        ends: Which places, paired, are at the lower and upper end of the trunk.
+    The ends are paired places, of the lower and the upper end.
     """
     names = [f"{side}_{end}" for end in ends for side in SIDES]
     if not all(name in places for name in names):
@@ -365,10 +352,7 @@ def trunk_share(
 
 
 def with_trunk(measures: Measures, share: float) -> Measures:
-    """The same body with a trunk longer by a factor; the same if no body has such a trunk.
-
-    Legs, arms and the head keep their sizes, so that the stature changes by as much as the trunk.
-    """
+    """The same body with a trunk longer by a factor, if there is such; legs, arms and head stay."""
     hip = measures.hip_height
     heights = {name: hip + share * (measures[name] - hip) for name in TRUNK_HEIGHTS}
     longer = heights["cervicale_height"] - measures["cervicale_height"]
@@ -382,10 +366,7 @@ def with_head(measures: Measures, higher_m: float) -> Measures:
 
 
 def with_legs(measures: Measures, lengths: Mapping[str, float]) -> Measures:
-    """The same body with other thighs, shanks or ankle heights [m]; all above moves with them.
-
-    The same if no body has such legs.
-    """
+    """The same body with other thighs, shanks or ankle heights [m]; all above moves with them."""
     higher = sum(length - measures[name] for name, length in lengths.items())
     raised = {name: measures[name] + higher for name in (*TRUNK_HEIGHTS, *UPPER_HEIGHTS)}
     return _changed(measures, raised | dict(lengths))
@@ -397,10 +378,7 @@ def with_ankles(
     places: Mapping[str, str],
     guidance: Guidance,
 ) -> Measures:
-    """The same body with its ankles as high above the ground as they are while its feet are flat.
-
-    The same if no body has such feet.
-    """
+    """The same body with ankles as high as they are while feet are flat, if there is such."""
     heights = [
         float(np.nanmedian(points[name][flat, 2])) - guidance.ground_m
         for name, place in places.items()

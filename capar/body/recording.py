@@ -84,8 +84,7 @@ def record(
         seed: Of noise, places of sensors and losses.
         tracker: Its faults; a MotionStar's where None.
         sensors: Places of those that are worn.
-        eye_tracker: Whether a head that is worn is recorded with where its eyes look (a sensor
-            ``eyes``); else only the face is known.
+        eye_tracker: Whether a worn head is recorded with its eyes (a sensor ``eyes``).
         agent: Who performed; sex and all measures of the body where None.
 
     Raises:
@@ -294,14 +293,7 @@ def _write(path: Path, lines: list[str]) -> None:
 def record_together(
     made: Mapping[str, Performance], *, name: str, seed: int, tracker: Tracker = PERFECT
 ) -> Capture:
-    """The capture of a performance of several bodies.
-
-    Args:
-        made: The performance of each, by the agent's name; the first one's bodies keep their names.
-        name: Of the capture.
-        seed: Of noise, places of sensors and losses.
-        tracker: Its faults; none, unless stated.
-    """
+    """The capture of a performance of several bodies; the first one's bodies keep their names."""
     captures = {
         who: record(done, name=name, seed=seed + number, tracker=tracker)
         for number, (who, done) in enumerate(made.items())
@@ -316,12 +308,9 @@ def record_together(
 
 
 def joined(captures: Mapping[str, Capture], names: Mapping[str, Mapping[str, str]]) -> Capture:
-    """One capture of everybody, from one of each in which the things are the same.
+    """One capture of everybody, from one of each in which the objects are the same.
 
-    Args:
-        captures: By the agent's name.
-        names: What each one's sensors are called in it, by the agent's name; likewise the parts
-            of bodies that are the same as sensors.
+    What sensors and parts of bodies are called in it is given by agent.
     """
     sensors: list[Sensor] = []
     parts: list[TagObject] = []

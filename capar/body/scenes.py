@@ -82,11 +82,7 @@ class Things:
         object.__setattr__(self, "things", MappingProxyType(dict(self.things)))
 
     def thing(self, name: str) -> Thing:
-        """The object of that name.
-
-        Raises:
-            UnknownNameError: There is none.
-        """
+        """The object of that name; UnknownNameError where there is none."""
         if name not in self.things:
             raise UnknownNameError("thing", name, self.things, where="scene")
         return self.things[name]
@@ -141,13 +137,7 @@ def table(
 
 
 def door_scene(tall_m: float) -> Scene:
-    """A closed door at chest height between two posts, its hinge to the left.
-
-    The origin of the door's frame is below where it is pushed, a hand's length from its free edge.
-
-    Args:
-        tall_m: The performer's stature [m].
-    """
+    """A closed door between two posts, for a stature [m]; its origin is where it is pushed."""
     thick, wide, high = LEAF_M
     place = (0.30 * tall_m, -0.06 * tall_m, 0.55 * tall_m)
     middle, beside = HINGE_M - 0.5 * wide, 0.5 * (wide + JAMB_M) + GAP_M
@@ -166,11 +156,7 @@ def door_scene(tall_m: float) -> Scene:
 
 
 def drawer_scene(tall_m: float) -> Scene:
-    """A closed drawer in a chest without a top, which the drawer overlooks a little.
-
-    Args:
-        tall_m: The performer's stature [m].
-    """
+    """A closed drawer in a chest without a top, for a stature [m]."""
     deep, wide, high = DRAWER_M
     place = (0.32 * tall_m, -0.10 * tall_m, 0.50 * tall_m)
     x, below = 0.5 * deep - 0.1, BOARD_M + GAP_M
@@ -208,12 +194,8 @@ def _shape(mesh: trimesh.Trimesh, description: str) -> Shape:
 def grips(thing: Thing, side: str, kind: str, measures: Measures) -> list[RigidTransform]:
     """``T_thing_palm`` of the grips that a hand may take, the easiest to state first.
 
-    Args:
-        thing: Whose frame they are in; its x axis leads away from the performer.
-        side: ``right`` or ``left``.
-        kind: ``side`` (thumb up, fingers forward), ``top``, or ``back`` (on the side that faces the
-            performer, fingers upwards).
-        measures: Whose hand; it stays clear of what the object stands on.
+    They are at the ``side`` (thumb up, fingers forward), on ``top``, or on the ``back`` that faces
+    the performer (fingers upwards); the object's x axis leads away from the performer.
     """
     if kind == "top":
         return [_top_grip(thing, side, measures, yaw) for yaw in YAWS]

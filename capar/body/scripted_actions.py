@@ -147,11 +147,7 @@ def action_scene(human: Human, action: str) -> Scene:
 
 @cache
 def performed(action: str, who: str = "man", *, rate_hz: float = 60.0) -> Performance:
-    """An action of ``ACTIONS`` as a ``man``, ``woman`` or ``child`` performs it.
-
-    Raises:
-        UnknownNameError: There is no such action or body.
-    """
+    """An action of ``ACTIONS`` as a ``man``, ``woman`` or ``child`` performs it."""
     if action not in ACTIONS:
         raise UnknownNameError("action", action, ACTIONS)
     human = Human.of(ready_made(who))
@@ -170,11 +166,7 @@ def action_capture(
 def performed_together(
     action: str, bodies: tuple[str, str] = ("man", "woman"), *, rate_hz: float = 60.0
 ) -> dict[str, Performance]:
-    """An action of ``JOINT_ACTIONS`` as two bodies perform it across a table, by agent.
-
-    Raises:
-        UnknownNameError: There is no such action or body.
-    """
+    """An action of ``JOINT_ACTIONS`` as two bodies perform it across a table, by agent."""
     if action not in JOINT_ACTIONS:
         raise UnknownNameError("action of two", action, JOINT_ACTIONS)
     first, second = (Human.of(ready_made(name)) for name in bodies)

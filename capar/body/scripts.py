@@ -129,15 +129,8 @@ def handling(
 ) -> Script:
     """Stand, reach for an object, go through steps while it is held, and return.
 
-    Args:
-        thing: What is held; the gaze is on it, or ahead while it is at the mouth.
-        steps: What happens meanwhile.
-        sides: Of the hands that hold it.
-        grip: Of these hands.
-        beside: Other objects in the same palm, which move alike.
-        load: Objects on it, which move alike.
-        reach_s: How long reaching takes [s].
-        back_s: How long the way back takes [s].
+    What is beside it in the palm or loaded on it moves alike. The gaze is on it, or ahead while it
+    is at the mouth. Reaching and returning take so long [s].
     """
     reaches, holds = (
         {side: Hand(does, thing, grip, beside) for side in sides} for does in ("reaches", "holds")
@@ -177,10 +170,7 @@ def drink(thing: str) -> Script:
 
 
 def sip(thing: str) -> Script:
-    """Drink from a cup in one go, in the six steps and about the times of thesis 5.2.1.
-
-    The cup is raised as soon as it is held, tipped further at the mouth, put back and let go.
-    """
+    """Drink from a cup in one go, in the six steps and about the times of thesis 5.2.1."""
     tilt = float(np.radians(40.0))
     steps: list[Step] = [
         ("raise", 0.8, Move(to_mouth=True, tilt=0.4 * tilt)),
@@ -237,15 +227,9 @@ def toss(thing: str) -> Script:
 
 
 def hand_over(thing: str, thing_to_offer: Vector, offer_to_table: Vector) -> dict[str, Script]:
-    """One takes an object from the table and holds it out, another takes it and puts it down.
+    """The ``giver`` takes an object and holds it out; the ``taker`` takes it and puts it down.
 
-    Args:
-        thing: What is handed over.
-        thing_to_offer: From where it stands to where it is handed over [m].
-        offer_to_table: From there to where it is put down [m].
-
-    Returns:
-        The scripts of the ``giver`` and of the ``taker``.
+    It goes from the table to where it is offered, and from there to where it is put down [m].
     """
     held, reached = ({"right": Hand(does, thing)} for does in ("holds", "reaches"))
     out: dict[str, list[Phase]] = {"giver": [], "taker": []}
@@ -305,13 +289,7 @@ def tossed(toss: Toss, by: Vector, seconds: float, share: float) -> Float[np.nda
     """Displacement of an object since its phase began [m], in the world's axes.
 
     In a hand along a cubic Hermite curve that has both velocities, else along the parabola of
-    gravity.
-
-    Args:
-        toss: How it moves.
-        by: Where a hand brings it, from where it was [m]; ignored where it falls.
-        seconds: Length of the phase [s].
-        share: Of the phase that has passed [1].
+    gravity; ``by`` is where a hand brings it [m], ``share`` how much of the phase has passed [1].
     """
     start, end, goal = np.array(toss.start), np.array(toss.end), np.array(by)
     if toss.falls:

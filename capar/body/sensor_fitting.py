@@ -120,10 +120,7 @@ class _Follower:
         self.stance = [] if legs_seen else self._stance(rest)
 
     def _stance(self, rest: Float[np.ndarray, "posture"]) -> list[mink.Task]:
-        """Tasks of a body of whose legs nothing is seen: pelvis upright, feet flat as at rest.
-
-        They are on one spot if the sensors stay near. Else who bends forward would tilt as a piece.
-        """
+        """Tasks of a body of whose legs nothing is seen: pelvis upright, feet flat as at rest."""
         self.configuration.update(rest)
         middle = np.mean([target.positions[:, :2] for target in self.targets.values()], axis=0)
         stays = float(np.linalg.norm(np.ptp(middle, axis=0)) < ON_SPOT_M)
@@ -276,12 +273,7 @@ class Fit:
 
 
 def fit(human: Human, streams: Mapping[str, Stream], calibration: Calibration) -> Fit:
-    """Fit the body to any subset of its sensors.
-
-    Args:
-        human: The body.
-        streams: By place, as recorded, on one clock.
-        calibration: Where they sit on it.
+    """Fit the body to any subset of its calibrated sensors, by place and on one clock.
 
     Raises:
         FitError: No sensor is calibrated, or the clocks differ.
@@ -328,14 +320,10 @@ def worn(capture: Capture) -> dict[str, Stream]:
 def fit_capture(capture: Capture, *, angles: Mapping[str, float] | None = None) -> Fit:
     """The body of a capture's performer, fitted to the sensors it wears.
 
-    Args:
-        capture: Its first 0.4 s are the reference posture.
-        angles: That posture [rad]; standing with straight arms down, palms inwards, where None.
+    The first 0.4 s are the reference posture [rad]: arms down, palms inwards, where not given.
 
     Raises:
-        FitError: No sensor is on a place of the body.
-        CalibrationError: Too few sensors are there to place the body.
-        MeasuresError: The stated measures are of no body.
+        CaparError: No sensor is on a place of the body, or too few; or the measures are of no body.
     """
     streams = worn(capture)
     if not streams:
@@ -349,9 +337,6 @@ def fit_refined(human: Human, streams: Mapping[str, Stream], calibration: Calibr
     """Fit the body to its sensors; again with refined measures where one is off by ``NOISE_M``.
 
     The second fit is kept if its worst sensor fits better.
-
-    Raises:
-        FitError: No sensor is calibrated, or the clocks differ.
     """
     began = time.perf_counter()
     made = fit(human, streams, calibration)
@@ -379,15 +364,7 @@ def refine(
 
     Where a limb is longer than assumed, no posture fits all sensors at once. Lengths, places of the
     sensors and postures of some frames are estimated by Gauss-Newton steps, each from its prior.
-
-    Args:
-        made: The motion fitted to the same sensors.
-        streams: By place, as recorded.
-        calibration: From the reference posture at the beginning.
-        samples: How many frames take part.
-
-    Returns:
-        The measures, with their deviations after the motion was seen, and the calibration.
+    The measures have their deviations after the motion was seen.
 
     Raises:
         RefinementError: Fewer than ten frames have all the sensors.

@@ -78,8 +78,8 @@ def calibrate(
 ) -> Calibration:
     """Find where each sensor sits, from its pose while the body holds a known posture.
 
-    A sensor is turned as seen. That it is not at its nominal place comes of where it was strapped
-    and of measures that are not the person's; each takes its share by its variance.
+    A sensor is turned as seen. Its distance from its nominal place is shared, by their variances,
+    between where it was strapped and measures that are not the person's.
 
     Args:
         human: The body.
@@ -89,7 +89,6 @@ def calibrate(
 
     Raises:
         CalibrationError: A sensor is lost throughout, or too few are there to place the body.
-        UnknownNameError: A place is none of the model's.
     """
     for place in streams:
         if place not in places():
@@ -139,10 +138,7 @@ def _placed(
     angles: Mapping[str, float] | None,
     placed: tuple[Float[np.ndarray, "3"], float] | None,
 ) -> Float[np.ndarray, "posture"]:
-    """The reference posture where the sensors see it: turned and moved, not tilted.
-
-    The turn and shift fit the sites to the sensors by weighted least squares.
-    """
+    """The reference posture turned and moved to the sensors by weighted least squares."""
     if placed is not None:
         return human.posture(angles, place=placed[0], heading=placed[1])
     if len(seen) < 2:
@@ -204,11 +200,7 @@ PERFECT = Tracker(0.0, 0.0, 0.0, 0.0)  # a tracker without faults
 def strap_on(
     human: Human, where: Iterable[str], tracker: Tracker, rng: np.random.Generator
 ) -> dict[str, Mount]:
-    """Mount sensors near their nominal places.
-
-    Raises:
-        UnknownNameError: A place is none of the model's.
-    """
+    """Mount sensors near their nominal places."""
     out = {}
     for place in where:
         if place not in places():
@@ -272,12 +264,7 @@ class Target:
 
 
 def target(stream: Stream, *, cutoff_hz: float | None = CUTOFF_HZ) -> Target:
-    """The target that a sensor's stream makes: gaps filled, noise filtered.
-
-    Args:
-        stream: As it was recorded.
-        cutoff_hz: Of the filter [Hz]; None leaves the stream as it is.
-    """
+    """The target that a sensor's stream makes: gaps filled, noise above a cutoff filtered."""
     filled = fill_gaps(stream, gap_s=GAP_S)
     weights = _weights(filled)
     if cutoff_hz is None or filled.lost.all():
