@@ -54,20 +54,12 @@ class MeasuresError(CaparError):
 class Measures:
     """The measures of one body."""
 
-    sex: str
-    """``male`` or ``female``."""
-
-    age: float
-    """Years."""
-
-    values: Mapping[str, float]
-    """Lengths [m] and ``mass`` [kg] by name."""
-
-    given: frozenset[str]
-    """Which of them were stated; the others are estimates."""
-
+    sex: str  #: ``male`` or ``female``
+    age: float  #: Years
+    values: Mapping[str, float]  #: Lengths [m] and ``mass`` [kg] by name
+    given: frozenset[str]  #: Which of them were stated; the others are estimates
+    #: Standard deviation of each [m, kg]: of measuring, or of estimating from stature
     deviations: Mapping[str, float]
-    """Standard deviation of each [m, kg]: of measuring, or of estimating from stature."""
 
     def __post_init__(self) -> None:
         """Check that they are of one body, and make them read-only."""

@@ -66,19 +66,14 @@ WARNINGS = {
 class Places:
     """Joints and markers of one body on one clock."""
 
-    times: Float[np.ndarray, "frames"]
-    """In the capture's time [s]."""
-
-    points: dict[str, Float[np.ndarray, "frames 3"]]
-    """In the world [m]."""
-
+    times: Float[np.ndarray, "frames"]  #: In the capture's time [s]
+    points: dict[str, Float[np.ndarray, "frames 3"]]  #: In the world [m]
     names: dict[str, BodyName]
 
+    #: Places on the body that the capture itself states
     stated: Mapping[str, str] = field(default_factory=dict)
-    """Places on the body that the capture itself states."""
-
+    #: Where the face looks, as a direction in the world [1]; None where it is not known
     faces: Float[np.ndarray, "frames 3"] | None = None
-    """Where the face looks, as a direction in the world [1]; None where it is not known."""
 
 
 def whole_body(place: str | Path) -> Places | None:

@@ -243,20 +243,14 @@ class Poses:
     """Poses of all segments, parents first; the first is the pelvis."""
 
     names: tuple[str, ...]
-    parents: tuple[int, ...]
-    """Number of each segment's parent; -1 for the pelvis."""
-
+    parents: tuple[int, ...]  #: Number of each segment's parent; -1 for the pelvis
+    #: Each segment's joint in its parent's frame [m]; the pelvis's in the world, standing
     offsets: Float[np.ndarray, "segments 3"]
-    """Each segment's joint in its parent's frame [m]; the pelvis's in the world, standing."""
-
-    positions: Float[np.ndarray, "frames segments 3"]
-    """In the world [m], z up."""
-
+    positions: Float[np.ndarray, "frames segments 3"]  #: In the world [m], z up
+    #: In the world, w x y z; standing, all are the world's: x forward, y left, z up
     orientations: Float[np.ndarray, "frames segments 4"]
-    """In the world, w x y z; standing, all are the world's: x forward, y left, z up."""
-
+    #: Against the parent, w x y z, without jumps of sign; the pelvis's in the world
     turns: Float[np.ndarray, "frames segments 4"]
-    """Against the parent, w x y z, without jumps of sign; the pelvis's in the world."""
 
 
 def poses_of(human: Human, motion: Float[np.ndarray, "frames posture"]) -> Poses:

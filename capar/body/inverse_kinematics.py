@@ -227,14 +227,10 @@ class DirectionTask(mink.Task):
 class Support:
     """A base of support: the convex hull of the soles that bear weight, seen from above."""
 
-    normals: Float[np.ndarray, "edges 2"]
-    """Outward, of length one."""
-
+    normals: Float[np.ndarray, "edges 2"]  #: Outward, of length one
+    #: How far each edge is from the origin along its normal [m]
     offsets: Float[np.ndarray, "edges"]
-    """How far each edge is from the origin along its normal [m]."""
-
-    middle: Float[np.ndarray, "2"]
-    """The mean of the hull's corners [m]."""
+    middle: Float[np.ndarray, "2"]  #: The mean of the hull's corners [m]
 
     def outside(self, places: Float[np.ndarray, "*places 2"]) -> Float[np.ndarray, "*places"]:
         """How far places are beyond an edge, at worst [m]; negative inside."""

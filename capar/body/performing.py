@@ -64,42 +64,25 @@ class Performance:
     human: Human
     scene: Scene
     script: Script
-    times: Float[np.ndarray, "frames"]
-    """[s]."""
-
+    times: Float[np.ndarray, "frames"]  #: [s]
     motion: Float[np.ndarray, "frames posture"]
-    things: Mapping[str, RigidTransform]
-    """``T_world_thing`` of every object at every frame."""
-
-    phases: tuple[tuple[str, float, float], ...]
-    """Name, start and end of each [s]."""
-
-    gazes: Float[np.ndarray, "frames 3"]
-    """Point looked at [m]."""
-
-    looks: tuple[str, ...]
-    """What is looked at in each phase."""
-
+    things: Mapping[str, RigidTransform]  #: ``T_world_thing`` of every object at every frame
+    phases: tuple[tuple[str, float, float], ...]  #: Name, start and end of each [s]
+    gazes: Float[np.ndarray, "frames 3"]  #: Point looked at [m]
+    looks: tuple[str, ...]  #: What is looked at in each phase
+    #: By side, distance of a palm from where it is to be [m]
     slip_m: Mapping[str, Float[np.ndarray, "frames"]]
-    """By side, distance of a palm from where it is to be [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Role:
     """Who does what, and from where."""
 
-    name: str
-    """Of the agent."""
-
+    name: str  #: Of the agent
     human: Human
-    script: Script
-    """As many phases as everybody else's, of the same lengths."""
-
-    place: tuple[float, float] = (0.0, 0.0)
-    """Where the body stands [m]."""
-
-    heading: float = 0.0
-    """Which way it faces, from x towards y [rad]."""
+    script: Script  #: As many phases as everybody else's, of the same lengths
+    place: tuple[float, float] = (0.0, 0.0)  #: Where the body stands [m]
+    heading: float = 0.0  #: Which way it faces, from x towards y [rad]
 
 
 Frame = tuple[np.ndarray, dict[str, RigidTransform], np.ndarray, dict[str, float]]

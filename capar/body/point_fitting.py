@@ -85,17 +85,12 @@ class SkeletonError(CaparError):
 class Guidance:
     """What is known of a body besides where points of it are."""
 
+    #: By side, when a foot stands flat
     flat: Mapping[str, Bool[np.ndarray, "frames"]] = field(default_factory=dict)
-    """By side, when a foot stands flat."""
-
-    ground_m: float | None = None
-    """Height of the ground on which they do [m]."""
-
+    ground_m: float | None = None  #: Height of the ground on which they do [m]
+    #: Where the face looks, as directions in the world [1]; NaN where that is not known
     faces: Float[np.ndarray, "frames 3"] | None = None
-    """Where the face looks, as directions in the world [1]; NaN where that is not known."""
-
-    ease: float = 1.0
-    """How much more than usual the standing posture counts [1]."""
+    ease: float = 1.0  #: How much more than usual the standing posture counts [1]
 
     def at(self, frames: Int[np.ndarray, "some"]) -> "Guidance":
         """The same for some of the frames."""
@@ -109,11 +104,9 @@ class PointFit:
 
     human: Human
     motion: Float[np.ndarray, "frames posture"]
+    #: By name, distance of the body's place from the point [m]; NaN if lost
     residuals_m: Mapping[str, Float[np.ndarray, "frames"]]
-    """By name, distance of the body's place from the point [m]; NaN if lost."""
-
-    segments: Mapping[str, str]
-    """By name, the segment that its place is on."""
+    segments: Mapping[str, str]  #: By name, the segment that its place is on
 
     @property
     def median_m(self) -> float:

@@ -27,17 +27,13 @@ LINKS = {"hand": "arm", "foot": "leg", "head": "neck"}
 class Truth:
     """What is so in a performance, to the frame."""
 
+    #: Two bodies that touch, from when to when [s], sorted
     contacts: tuple[tuple[str, str, float, float], ...]
-    """Two bodies that touch, from when to when [s], sorted."""
-
-    motions: tuple[tuple[str, float, float], ...]
-    """A thing that moves, from when to when [s]."""
-
+    motions: tuple[tuple[str, float, float], ...]  #: A thing that moves, from when to when [s]
+    #: Name, start and end of each phase of the script [s]
     phases: tuple[tuple[str, float, float], ...]
-    """Name, start and end of each phase of the script [s]."""
-
+    #: What is looked at while a phase lasts, from when to when [s]
     looks: tuple[tuple[str, float, float], ...]
-    """What is looked at while a phase lasts, from when to when [s]."""
 
 
 def truth_of(made: Performance) -> Truth:

@@ -47,17 +47,11 @@ class Thing:
 
     name: str
     shape: Shape
-    place: tuple[float, float, float]
-    """Where its bottom's middle stands [m]."""
-
-    heading: float = 0.0
-    """Turn about z [rad]."""
-
+    place: tuple[float, float, float]  #: Where its bottom's middle stands [m]
+    heading: float = 0.0  #: Turn about z [rad]
     tag: TagType = TagType.MOBILE
     kind: str = ""
-    round: bool = False
-    """Whether it may be taken from any side."""
-
+    round: bool = False  #: Whether it may be taken from any side
     mass_kg: float | None = None
 
     @property

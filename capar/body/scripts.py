@@ -29,36 +29,24 @@ AWAITED_M = np.array([0.0, 0.04, -0.02])
 class Toss:
     """What moves an object in a phase in which it is thrown, flies or is caught."""
 
-    start: Vector = (0.0, 0.0, 0.0)
-    """Velocity with which it begins [m/s]."""
-
-    end: Vector = (0.0, 0.0, 0.0)
-    """Velocity with which it ends; ignored where it falls [m/s]."""
-
-    falls: bool = False
-    """Whether nothing but gravity moves it."""
+    start: Vector = (0.0, 0.0, 0.0)  #: Velocity with which it begins [m/s]
+    end: Vector = (0.0, 0.0, 0.0)  #: Velocity with which it ends; ignored where it falls [m/s]
+    falls: bool = False  #: Whether nothing but gravity moves it
 
 
 @dataclass(frozen=True)
 class Hand:
     """What one hand does in a phase."""
 
+    #: ``rests`` at the side, ``reaches`` for an object, ``holds`` on to it, ``awaits`` it where it
+    #: will be, or ``lets_go`` of it and swings on a little
     does: str
-    """``rests`` at the side, ``reaches`` for an object, ``holds`` on to it, ``awaits`` it where it
-    will be, or ``lets_go`` of it and swings on a little."""
-
     thing: str = ""
-    grip: str = "side"
-    """``side``, ``top`` or ``back``, which is the side that faces the performer."""
-
-    beside: tuple[str, ...] = ()
-    """Other objects that lie in the same palm."""
-
+    grip: str = "side"  #: ``side``, ``top`` or ``back``, which is the side that faces the performer
+    beside: tuple[str, ...] = ()  #: Other objects that lie in the same palm
+    #: Where the object is awaited, from where it stands at first [m]
     awaited: Vector = (0.0, 0.0, 0.0)
-    """Where the object is awaited, from where it stands at first [m]."""
-
-    velocity: Vector = (0.0, 0.0, 0.0)
-    """With which an object is let go [m/s]."""
+    velocity: Vector = (0.0, 0.0, 0.0)  #: With which an object is let go [m/s]
 
 
 RESTS = Hand("rests")
@@ -68,27 +56,17 @@ RESTS = Hand("rests")
 class Move:
     """Where a held object goes in a phase."""
 
-    by: Vector = (0.0, 0.0, 0.0)
-    """Displacement from where it is [m]."""
-
+    by: Vector = (0.0, 0.0, 0.0)  #: Displacement from where it is [m]
+    #: How it turns meanwhile about its frame's origin, in the world's axes [rad]
     turn: Vector = (0.0, 0.0, 0.0)
-    """How it turns meanwhile about its frame's origin, in the world's axes [rad]."""
-
+    #: A point of the object's frame about which it turns instead, as on a hinge [m]
     about: Vector = (0.0, 0.0, 0.0)
-    """A point of the object's frame about which it turns instead, as on a hinge [m]."""
-
-    lift: float = 0.0
-    """Height of the arc above the straight path [m]."""
-
+    lift: float = 0.0  #: Height of the arc above the straight path [m]
     to_mouth: bool = False
-    tilt: float = 0.0
-    """Turn of its top towards the face at the mouth [rad]."""
-
-    home: bool = False
-    """Whether it goes back to where it stood at the beginning."""
-
+    tilt: float = 0.0  #: Turn of its top towards the face at the mouth [rad]
+    home: bool = False  #: Whether it goes back to where it stood at the beginning
+    #: How it is thrown, flies or is caught; an object that is moved otherwise begins at rest
     toss: Toss | None = None
-    """How it is thrown, flies or is caught; an object that is moved otherwise begins at rest."""
 
 
 @dataclass(frozen=True)
@@ -97,12 +75,10 @@ class Phase:
 
     name: str
     seconds: float
+    #: By side; a hand that is not named rests
     hands: Mapping[str, Hand] = field(default_factory=dict)
-    """By side; a hand that is not named rests."""
-
     moves: Mapping[str, Move] = field(default_factory=dict)
-    look: str = ""
-    """An object's name, ``ahead``, or empty for where one looked before."""
+    look: str = ""  #: An object's name, ``ahead``, or empty for where one looked before
 
     def hand(self, side: str) -> Hand:
         """What a hand does."""

@@ -228,27 +228,18 @@ class _Follower:
 class Fit:
     """A body's motion that follows a recording."""
 
-    human: Human
-    """With its sensors where they were found."""
-
-    times: Float[np.ndarray, "frames"]
-    """[s]."""
-
+    human: Human  #: With its sensors where they were found
+    times: Float[np.ndarray, "frames"]  #: [s]
     motion: Float[np.ndarray, "frames posture"]
+    #: By place, where its sensor was lost and the posture was interpolated
     bridged: Mapping[str, Bool[np.ndarray, "frames"]]
-    """By place, where its sensor was lost and the posture was interpolated."""
-
+    #: By place, distance of the body's sensor site from the filtered sensor [m]; NaN if lost
     residuals_m: Mapping[str, Float[np.ndarray, "frames"]]
-    """By place, distance of the body's sensor site from the filtered sensor [m]; NaN if lost."""
-
+    #: Likewise the angle between them [rad]
     residuals_rad: Mapping[str, Float[np.ndarray, "frames"]]
-    """Likewise the angle between them [rad]."""
-
-    seconds: float
-    """How long fitting took [s]."""
-
+    seconds: float  #: How long fitting took [s]
+    #: By place followed, the segment that it is on
     segments: Mapping[str, str] = field(default_factory=dict)
-    """By place followed, the segment that it is on."""
 
     @property
     def unrecorded(self) -> tuple[str, ...]:

@@ -46,12 +46,9 @@ class CalibrationError(CaparError):
 class Mount:
     """A sensor on a segment."""
 
-    place: str
-    """``l5``, ``right_hand`` ...: the site ``sensor_<place>`` of the model."""
-
+    place: str  #: ``l5``, ``right_hand`` ...: the site ``sensor_<place>`` of the model
     segment: str
-    pose: RigidTransform
-    """``T_segment_sensor``."""
+    pose: RigidTransform  #: ``T_segment_sensor``
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,23 +165,14 @@ def _chain_variance(segment: str, measures: Measures) -> float:
 class Tracker:
     """A tracker's faults; the defaults are those of a MotionStar in a good room."""
 
-    noise_m: float = 0.0015
-    """Deviation of a position about each axis [m]."""
-
-    noise_rad: float = float(np.radians(0.4))
-    """Deviation of an orientation about each axis [rad]."""
-
+    noise_m: float = 0.0015  #: Deviation of a position about each axis [m]
+    noise_rad: float = float(np.radians(0.4))  #: Deviation of an orientation about each axis [rad]
+    #: Deviation of where a sensor is strapped from its nominal place, about each axis [m]
     placement_m: float = 0.005
-    """Deviation of where a sensor is strapped from its nominal place, about each axis [m]."""
-
+    #: Deviation of how it is turned there, about each axis [rad]
     placement_rad: float = float(np.radians(15.0))
-    """Deviation of how it is turned there, about each axis [rad]."""
-
-    dropouts_per_s: float = 0.0
-    """Losses of one sensor a second."""
-
-    dropout_s: float = 0.05
-    """Mean length of a loss, exponentially distributed [s]."""
+    dropouts_per_s: float = 0.0  #: Losses of one sensor a second
+    dropout_s: float = 0.05  #: Mean length of a loss, exponentially distributed [s]
 
     def __post_init__(self) -> None:
         """Check the numbers."""
@@ -253,14 +241,10 @@ def recorded(
 class Target:
     """The path of one sensor, and how far it is to be trusted."""
 
-    positions: Float[np.ndarray, "frames 3"]
-    """[m]; NaN where it was lost for long."""
-
-    orientations: Float[np.ndarray, "frames 4"]
-    """w x y z; NaN likewise."""
-
+    positions: Float[np.ndarray, "frames 3"]  #: [m]; NaN where it was lost for long
+    orientations: Float[np.ndarray, "frames 4"]  #: w x y z; NaN likewise
+    #: 1 where it is known, 0 where it is lost, in between next to a loss [1]
     weights: Float[np.ndarray, "frames"]
-    """1 where it is known, 0 where it is lost, in between next to a loss [1]."""
 
 
 def target(stream: Stream, *, cutoff_hz: float | None = CUTOFF_HZ) -> Target:

@@ -32,18 +32,13 @@ class Form:
     """One primitive in a segment's frame."""
 
     body: str
-    kind: str
-    """``capsule``, ``ellipsoid`` or ``box``."""
-
-    centre: Float[np.ndarray, "3"]
-    """[m]."""
-
+    kind: str  #: ``capsule``, ``ellipsoid`` or ``box``
+    centre: Float[np.ndarray, "3"]  #: [m]
+    #: Half sizes [m]; of a capsule its radius, then half the length of its axis, then 0
     half: Float[np.ndarray, "3"]
-    """Half sizes [m]; of a capsule its radius, then half the length of its axis, then 0."""
-
     colour: str
+    #: Direction of a capsule's axis [1]; other forms lie along the world's axes, standing
     axis: Float[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))
-    """Direction of a capsule's axis [1]; other forms lie along the world's axes, standing."""
 
 
 def forms(measures: Measures, segments: Mapping[str, Segment]) -> list[Form]:

@@ -43,14 +43,9 @@ class Segment:
     """One rigid part of the body, in the world's axes, standing with the arms down."""
 
     name: str
-    parent: str
-    """Name of the segment that it hangs on; empty for the pelvis."""
-
-    origin: Float[np.ndarray, "3"]
-    """Its joint with the parent [m]."""
-
-    tip: Float[np.ndarray, "3"]
-    """Its far end: the next joint, or where it ends [m]."""
+    parent: str  #: Name of the segment that it hangs on; empty for the pelvis
+    origin: Float[np.ndarray, "3"]  #: Its joint with the parent [m]
+    tip: Float[np.ndarray, "3"]  #: Its far end: the next joint, or where it ends [m]
 
     @property
     def length(self) -> float:

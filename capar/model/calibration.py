@@ -16,11 +16,9 @@ from capar.model.errors import UnknownNameError, named
 class FixedPose:
     """Where a body stands throughout."""
 
-    position_m: tuple[float, float, float]
-    """World position [m]."""
-
+    position_m: tuple[float, float, float]  #: World position [m]
+    #: Unit quaternion w x y z that takes the body's axes to the world's
     orientation: tuple[float, float, float, float]
-    """Unit quaternion w x y z that takes the body's axes to the world's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,51 +26,30 @@ class BodyCalibration:
     """What one sensor's or object's stream shows."""
 
     name: str
-    noise_m: float
-    """Standard deviation of one coordinate [m]."""
-
-    noise_rad: float
-    """Standard deviation of the rotation about one axis [rad]."""
-
+    noise_m: float  #: Standard deviation of one coordinate [m]
+    noise_rad: float  #: Standard deviation of the rotation about one axis [rad]
+    #: Displacement from a place of rest below which the body is still there [m]
     motion_floor_m: float
-    """Displacement from a place of rest below which the body is still there [m]."""
-
-    motion_floor_rad: float
-    """The same for its orientation [rad]."""
-
+    motion_floor_rad: float  #: The same for its orientation [rad]
+    #: Highest speed of its low-passed origin [m/s]: extrema of speed are compared with it
     highest_speed_mps: float
-    """Highest speed of its low-passed origin [m/s]: extrema of speed are compared with it."""
-
+    #: The axis that points up where it first rests, in its own frame; a unit vector
     upright: tuple[float, float, float]
-    """The axis that points up where it first rests, in its own frame; a unit vector."""
-
-    still: bool
-    """Whether its recorded pose is one and the same in every frame."""
-
+    still: bool  #: Whether its recorded pose is one and the same in every frame
+    #: Of a FIXED object, the median of its poses, at which it is taken to stand; else None
     fixed: FixedPose | None = None
-    """Of a FIXED object, the median of its poses, at which it is taken to stand; else None."""
 
 
 class Found(StrEnum):
     """How the distance at which two bodies touch was found (spec 10)."""
 
-    TOLERANCE = "tolerance"
-    """Both have surfaces, which touch within the tolerance."""
-
-    STATED = "stated"
-    """The capture states it, or the user for this run."""
-
-    CO_MOTION = "co-motion"
-    """From frames in which one travels and is steady in the other's frame."""
-
+    TOLERANCE = "tolerance"  #: Both have surfaces, which touch within the tolerance
+    STATED = "stated"  #: The capture states it, or the user for this run
+    CO_MOTION = "co-motion"  #: From frames in which one travels and is steady in the other's frame
+    #: From frames in which one rests by the other, nearer than where they rest apart
     SETTLING = "settling"
-    """From frames in which one rests by the other, nearer than where they rest apart."""
-
-    REST = "rest"
-    """From frames in which one rests on the other and nobody holds it."""
-
-    NEVER = "never"
-    """Nothing in the recording shows that they touch; they are taken not to."""
+    REST = "rest"  #: From frames in which one rests on the other and nobody holds it
+    NEVER = "never"  #: Nothing in the recording shows that they touch; they are taken not to
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,30 +58,21 @@ class PairCalibration:
 
     first: str
     second: str
+    #: Distance up to which they touch [m]: of surfaces, or of points where ``pivots``
     touch_m: float
-    """Distance up to which they touch [m]: of surfaces, or of points where ``pivots``."""
-
+    #: Between two frames of contact they touch while they are nearer than this [m]
     release_m: float
-    """Between two frames of contact they touch while they are nearer than this [m]."""
-
-    pivots: bool = False
-    """Whether the distance is that of two points of theirs, not of surfaces."""
-
+    pivots: bool = False  #: Whether the distance is that of two points of theirs, not of surfaces
     found: Found = Found.TOLERANCE
-    frames: int = 0
-    """From how many frames it was found; zero where it was not."""
-
+    frames: int = 0  #: From how many frames it was found; zero where it was not
+    #: The point of the first body in its own frame [m], where ``pivots``
     first_point: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """The point of the first body in its own frame [m], where ``pivots``."""
-
     second_point: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
+    #: What the recording shows where it contradicts what is taken [m]; else None.
+    #: Of a stated distance, the one that would be estimated. Of two surfaces, the gap at which one
+    #: steadily carries the other: a mount or a fit is off by so much
     shown_m: float | None = None
-    """What the recording shows where it contradicts what is taken [m]; else None.
-
-    Of a stated distance, the one that would be estimated. Of two surfaces, the gap at which one
-    steadily carries the other: a mount or a fit is off by so much.
-    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,8 +80,7 @@ class FootLevel:
     """On what level an agent's feet stand."""
 
     agent: str
-    height_m: float
-    """Height of the lowest point of a foot at its lowest rest [m]."""
+    height_m: float  #: Height of the lowest point of a foot at its lowest rest [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,8 +89,8 @@ class MovingGround:
 
     agent: str
     ground: str
+    #: Level velocity of its surface along the world's x and y axes [m/s]
     velocity_mps: tuple[float, float]
-    """Level velocity of its surface along the world's x and y axes [m/s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,17 +100,11 @@ class Horizons:
     Rest poses and what follows from them have no horizon; see ``extractors.calibration``.
     """
 
-    filter_s: float
-    """Half the length of the low-pass filter [s]."""
-
-    gap_s: float
-    """Longest loss that is interpolated [s]; as many frames on each side take part."""
-
+    filter_s: float  #: Half the length of the low-pass filter [s]
+    gap_s: float  #: Longest loss that is interpolated [s]; as many frames on each side take part
+    #: How far about an extremum of speed its prominence and its neighbours are sought [s]
     extremum_s: float
-    """How far about an extremum of speed its prominence and its neighbours are sought [s]."""
-
-    interval_s: float
-    """Longest interruption that is closed, and shortest interval that counts [s]."""
+    interval_s: float  #: Longest interruption that is closed, and shortest interval that counts [s]
 
     @property
     def margin_s(self) -> float:
@@ -158,35 +119,21 @@ class Horizons:
 class Calibration:
     """Everything that is decided once for a whole recording."""
 
-    step_s: float
-    """Median step of the clock [s]."""
-
-    cutoff_hz: float
-    """Where the zero-phase low-pass halves the amplitude [Hz]."""
-
-    contact_tolerance_m: float
-    """Distance up to which surfaces count as touching [m]."""
-
-    contact_dropout_s: float
-    """A shorter interruption of a contact is closed [s]."""
-
-    contact_minimum_s: float
-    """A shorter contact is dropped [s]."""
-
+    step_s: float  #: Median step of the clock [s]
+    cutoff_hz: float  #: Where the zero-phase low-pass halves the amplitude [Hz]
+    contact_tolerance_m: float  #: Distance up to which surfaces count as touching [m]
+    contact_dropout_s: float  #: A shorter interruption of a contact is closed [s]
+    contact_minimum_s: float  #: A shorter contact is dropped [s]
     sensors: tuple[BodyCalibration, ...]
     objects: tuple[BodyCalibration, ...]
+    #: Pairs of bodies whose contact is sought, as they are sought
     pairs: tuple[PairCalibration, ...]
-    """Pairs of bodies whose contact is sought, as they are sought."""
-
-    foot_levels: tuple[FootLevel, ...]
-    """Of each agent with feet that rest."""
-
+    foot_levels: tuple[FootLevel, ...]  #: Of each agent with feet that rest
     horizons: Horizons
+    #: Every number that extraction decides by, by its name in ``extractors.thresholds``
     thresholds: Mapping[str, float]
-    """Every number that extraction decides by, by its name in ``extractors.thresholds``."""
-
+    #: Grounds that go by under feet that walk on the spot
     moving_grounds: tuple[MovingGround, ...] = ()
-    """Grounds that go by under feet that walk on the spot."""
 
     def __post_init__(self) -> None:
         """Make the thresholds read-only."""

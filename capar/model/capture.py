@@ -48,14 +48,11 @@ class ShapeSource(StrEnum):
 class Stream:
     """One rigid body's pose over time; a frame is lost where its pose is NaN."""
 
-    times: Float[np.ndarray, "frames"]
-    """Seconds since the first frame, strictly increasing."""
-
+    times: Float[np.ndarray, "frames"]  #: Seconds since the first frame, strictly increasing
+    #: Origin of the body in the world [m]; NaN where it was lost
     positions: Float[np.ndarray, "frames 3"]
-    """Origin of the body in the world [m]; NaN where it was lost."""
-
+    #: Unit quaternions w x y z that take the body's axes to the world's, of continuous sign
     orientations: Float[np.ndarray, "frames 4"]
-    """Unit quaternions w x y z that take the body's axes to the world's, of continuous sign."""
 
     def __post_init__(self) -> None:
         """Check the stream, and make signs continuous and arrays read-only."""
@@ -118,15 +115,11 @@ class Stream:
 class Shape:
     """A body's surface as triangles, in the body's own frame."""
 
-    vertices: Float[np.ndarray, "vertices 3"]
-    """Corners [m]."""
-
-    faces: Int[np.ndarray, "faces 3"]
-    """Indices of corners, counter-clockwise seen from outside."""
-
+    vertices: Float[np.ndarray, "vertices 3"]  #: Corners [m]
+    faces: Int[np.ndarray, "faces 3"]  #: Indices of corners, counter-clockwise seen from outside
     source: ShapeSource = ShapeSource.MESH
+    #: What it is, for people: a file's name, or a form with its sizes in metres
     description: str = ""
-    """What it is, for people: a file's name, or a form with its sizes in metres."""
 
     def __post_init__(self) -> None:
         """Check the triangles and make the arrays read-only."""
@@ -158,30 +151,21 @@ class Sensor:
     """A tracking sensor: the body segment it rides on, and the link that the segment ends."""
 
     name: str
-    end_effector: str
-    """General type, without side: ``hand``, ``foot``, ``head`` (thesis 4.4.1)."""
-
-    side: str
-    """``right``, ``left``, or ``none`` for what has no side."""
-
-    link: str
-    """The kinematic chain that the segment ends: ``right_arm``."""
-
+    end_effector: str  #: General type, without side: ``hand``, ``foot``, ``head`` (thesis 4.4.1)
+    side: str  #: ``right``, ``left``, or ``none`` for what has no side
+    link: str  #: The kinematic chain that the segment ends: ``right_arm``
     stream: Stream
     shape: Shape | None = None
     role: Role = Role.ACTS
+    #: Direction of sight in the sensor's frame, for a sensor that attends or a head
     gaze: tuple[float, float, float] = (1.0, 0.0, 0.0)
-    """Direction of sight in the sensor's frame, for a sensor that attends or a head."""
-
+    #: Where sight starts, in the sensor's frame [m]
     eye: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Where sight starts, in the sensor's frame [m]."""
-
+    #: Name of the agent whose body it rides on; empty for the capture's first, or only, one
     agent: str = ""
-    """Name of the agent whose body it rides on; empty for the capture's first, or only, one."""
-
+    #: Name of the sensor whose end-effector this one rides on too, as a finger's does on a hand's:
+    #: it makes no segments of its own, and what it touches that end-effector touches
     part_of: str = ""
-    """Name of the sensor whose end-effector this one rides on too, as a finger's does on a hand's:
-    it makes no segments of its own, and what it touches that end-effector touches."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,19 +176,15 @@ class TagObject:
     tag: TagType
     stream: Stream
     shape: Shape | None = None
+    #: Its noun (``mug``), under which the Actionary keeps what is known of such objects
     kind: str = ""
-    """Its noun (``mug``), under which the Actionary keeps what is known of such objects."""
-
+    #: How its pose and size were derived, where the recording lacks it; else empty
     assumed: str = ""
-    """How its pose and size were derived, where the recording lacks it; else empty."""
-
     deformable: bool = False
+    #: Displacement below which it counts as still [m], where it differs from the capture's
     motion_floor_m: float | None = None
-    """Displacement below which it counts as still [m], where it differs from the capture's."""
-
     mass_kg: float | None = None
-    agent: str = ""
-    """Of a SELF object, the agent whose body part it is; empty as for a sensor."""
+    agent: str = ""  #: Of a SELF object, the agent whose body part it is; empty as for a sensor
 
 
 @dataclass(frozen=True)
@@ -252,12 +232,8 @@ def upward(axis: str) -> "Rotation":
 class Conventions:
     """What a file's numbers were taken to mean, as a capture.toml states it."""
 
-    unit_m: float = 1.0
-    """Metres per unit."""
-
-    up: str = "z"
-    """Upward axis of the file, or of its mirror image in x if it is left-handed."""
-
+    unit_m: float = 1.0  #: Metres per unit
+    up: str = "z"  #: Upward axis of the file, or of its mirror image in x if it is left-handed
     left_handed: bool = False
 
     def __post_init__(self) -> None:
@@ -294,8 +270,8 @@ class Agent:
 
     name: str = "agent"
     kind: str = "person"
+    #: Lengths [m] and ``mass`` [kg] by name: ``stature``, ``upper_arm``
     measures: Mapping[str, float] = field(default_factory=dict)
-    """Lengths [m] and ``mass`` [kg] by name: ``stature``, ``upper_arm`` ..."""
 
     def __post_init__(self) -> None:
         """Make the measures read-only."""
@@ -326,9 +302,9 @@ class Source:
     path: str
     format: str
     sha256: str
+    #: When it says that it was recorded: ISO 8601, a date or a date and time, with or without a
+    #: time zone. Empty if it does not say
     recorded_at: str = ""
-    """When it says that it was recorded: ISO 8601, a date or a date and time, with or without a
-    time zone. Empty if it does not say."""
 
 
 def recorded_at(sources: Sequence[Source]) -> str:
@@ -350,27 +326,21 @@ class Capture:
     sensors: tuple[Sensor, ...]
     objects: tuple[TagObject, ...]
     agent: Agent = field(default_factory=Agent)
+    #: Distance up to which bodies count as touching [m]; None takes it from the sensors' noise
     contact_tolerance_m: float | None = None
-    """Distance up to which bodies count as touching [m]; None takes it from the sensors' noise."""
-
+    #: A shorter interruption of a contact is closed [s]; None takes the usual time
     contact_dropout_s: float | None = None
-    """A shorter interruption of a contact is closed [s]; None takes the usual time."""
-
+    #: A shorter contact is dropped [s]; None takes the usual time
     contact_minimum_s: float | None = None
-    """A shorter contact is dropped [s]; None takes the usual time."""
-
     pivot_contacts: tuple[PivotContact, ...] = ()
     purposes: tuple[Purpose, ...] = ()
+    #: Whether the user says that force passes to objects in this trial (thesis 4.4.1)
     force_transfer: bool = False
-    """Whether the user says that force passes to objects in this trial (thesis 4.4.1)."""
-
     sources: tuple[Source, ...] = ()
     notices: tuple[Notice, ...] = ()
-    others: tuple[Agent, ...] = ()
-    """Who else performed, where several agents did."""
-
+    others: tuple[Agent, ...] = ()  #: Who else performed, where several agents did
+    #: By which each body's file was read, by the body's name; empty of what no file held
     conventions: Mapping[str, Conventions] = field(default_factory=dict)
-    """By which each body's file was read, by the body's name; empty of what no file held."""
 
     def __post_init__(self) -> None:
         """Check names and clocks."""

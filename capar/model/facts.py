@@ -133,35 +133,28 @@ class Span(Enum):
 class Declaration:
     """What a kind of fact states about itself."""
 
+    #: The class in the ontology and the property of each argument. Of a sampled kind: of each
+    #: argument that is a name, and one for the rows of numbers, each led by its frame
     terms: str
-    """The class in the ontology and the property of each argument. Of a sampled kind: of each
-    argument that is a name, and one for the rows of numbers, each led by its frame."""
-
+    #: The field that names the body that the fact is about; empty where it is about none
     about: str
-    """The field that names the body that the fact is about; empty where it is about none."""
-
+    #: When it holds. A kind of fact: during that kind's interval of the same bodies and the same
+    #: first frame
     span: "Span | type[Observed]"
-    """When it holds. A kind of fact: during that kind's interval of the same bodies and the same
-    first frame."""
-
+    #: Whether segments of the body that it is about, and of end-effectors that touch this body
+    #: meanwhile, may begin or end where the fact begins or ends, so that places are measured there;
+    #: a set: only those of these names in ``stretch``
     border: bool | frozenset[str] = False
-    """Whether segments of the body that it is about, and of end-effectors that touch this body
-    meanwhile, may begin or end where the fact begins or ends, so that places are measured there;
-    a set: only those of these names in ``stretch``."""
-
+    #: The name under which rules find the ticks in it (``spans/6``, ``encloses/6``), with fields
+    #: in braces. Empty: rules do not join it by ticks
     stretch: str = ""
-    """The name under which rules find the ticks in it (``spans/6``, ``encloses/6``), with fields
-    in braces. Empty: rules do not join it by ticks."""
-
+    #: The fields that name the other bodies of such a join; none: the body itself
     others: tuple[str, ...] = ()
-    """The fields that name the other bodies of such a join; none: the body itself."""
-
+    #: What an interval is taken for that is contradicted as flicker, such as ``apart``; empty
+    #: where flicker is not resolved
     negated: str = ""
-    """What an interval is taken for that is contradicted as flicker, such as ``apart``; empty
-    where flicker is not resolved."""
-
+    #: The power of ten by which an argument becomes SI units in RDF, by its field
     powers: Mapping[str, int] = field(default_factory=dict)
-    """The power of ten by which an argument becomes SI units in RDF, by its field."""
 
     @property
     def rdf(self) -> tuple[str, ...]:

@@ -20,8 +20,8 @@ class Nlt:
     """Normalised local transform: a place in an object's frame over its size, and a quaternion."""
 
     position: tuple[float, float, float]
+    #: Unit quaternion w x y z that takes the constraint's axes to the object's
     orientation: tuple[float, float, float, float]
-    """Unit quaternion w x y z that takes the constraint's axes to the object's."""
 
     def mirrored(self, axis: int = ACROSS) -> "Nlt":
         """The same place for the other side of the body (thesis 4.4.2.2).
@@ -81,22 +81,14 @@ class ConstraintLocation:
 
     action: str
     purpose: str
-    ee: str
-    """The end-effector that made it."""
-
+    ee: str  #: The end-effector that made it
     side: str
     frame: int
-    dominant: str
-    """The object of ``ee_nlt``; empty if the end-effector alone made the contact."""
-
-    goal: str
-    """The object of ``goal_nlt``."""
-
+    dominant: str  #: The object of ``ee_nlt``; empty if the end-effector alone made the contact
+    goal: str  #: The object of ``goal_nlt``
     ee_nlt: Nlt | None
     goal_nlt: Nlt | None
-    seen: str = ""
-    """The object of ``v_nlt``; empty if nothing was looked at."""
-
+    seen: str = ""  #: The object of ``v_nlt``; empty if nothing was looked at
     v_nlt: Nlt | None = None
 
 
@@ -105,25 +97,18 @@ class GuideLocation:
     """Where on an object its hinge or rail is: a constraint location that always holds (spec 10).
 
     The constraint's x axis is the line of the hinge or the rail, in the sense in which the object
-    opens: along the rail, or right-handed about the hinge.
+    opens, along the rail or right-handed about the hinge.
     """
 
-    object: str
-    """The door, lid or drawer."""
-
-    base: str
-    """The fixed object that bears the hinge or the rail."""
-
-    kind: str
-    """``hinge`` or ``rail``."""
-
+    object: str  #: The door, lid or drawer
+    base: str  #: The fixed object that bears the hinge or the rail
+    kind: str  #: ``hinge`` or ``rail``
     object_nlt: Nlt
     base_nlt: Nlt
+    #: How far from its closed place it was seen at most: [rad] on a hinge, [m] on a rail
     opened: float
-    """How far from its closed place it was seen at most: [rad] on a hinge, [m] on a rail."""
-
+    #: Root mean square of how far its poses are off the fitted line, turning included [m]
     residual_m: float
-    """Root mean square of how far its poses are off the fitted line, turning included [m]."""
 
 
 UNIT_M = 1e-4  # places are kept to this [m]
@@ -135,11 +120,9 @@ class SampledTrack:
     """The places of a body's origin in the world, from the first frame on."""
 
     body: str
-    step_s: float
-    """Time between two samples [s]; zero where one sample holds throughout."""
-
+    step_s: float  #: Time between two samples [s]; zero where one sample holds throughout
+    #: Base64 of x, y, z of each sample as little-endian 32-bit integers in units of ``UNIT_M``
     samples: str
-    """Base64 of x, y, z of each sample as little-endian 32-bit integers in units of ``UNIT_M``."""
 
     def __post_init__(self) -> None:
         """Check that the text can be read.

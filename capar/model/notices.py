@@ -55,18 +55,12 @@ Field = tuple[str, Value]
 class Notice:
     """Something about a capture that is no error and that its user ought to know."""
 
-    code: str
-    """A stable name in kebab case, of those in ``KINDS``."""
-
-    bodies: tuple[str, ...] = ()
-    """The bodies that it is about."""
-
-    start_s: float | None = None
-    """When what it says begins [s]; None where it is about no time."""
-
+    code: str  #: A stable name in kebab case, of those in ``KINDS``
+    bodies: tuple[str, ...] = ()  #: The bodies that it is about
+    start_s: float | None = None  #: When what it says begins [s]; None where it is about no time
     end_s: float | None = None
+    #: Further numbers and words, sorted by name; a unit ends the name: ``tolerance_m``
     values: tuple[Field, ...] = ()
-    """Further numbers and words, sorted by name; a unit ends the name: ``tolerance_m``."""
 
     def __post_init__(self) -> None:
         """Check that its sentence can be made."""
@@ -163,22 +157,16 @@ def read_notice(document: Mapping[str, Any]) -> Notice:
 class NoticeKind:
     """What is said of notices of a code."""
 
+    #: A template over the bodies by number and the other fields by name, one for each value of the
+    #: field ``by``, or what makes the text
     text: str | Mapping[str, str] | Callable[[Notice], str]
-    """A template over the bodies by number and the other fields by name, one for each value of the
-    field ``by``, or what makes the text."""
-
+    #: What many of it are called; empty where it does not bear on the truth of what is told.
+    #: Without one that does, what is told would be taken for more certain than it is
     several: str = ""
-    """What many of it are called; empty where it does not bear on the truth of what is told.
-
-    Without one that does, what is told would be taken for more certain than it is.
-    """
-
+    #: Whether it tells of a fault of the recording, or of what was stated of it
     fault: bool = False
-    """Whether it tells of a fault of the recording, or of what was stated of it."""
-
+    #: Whether it bears on nothing but what is told of its two bodies together
     of_pair: bool = False
-    """Whether it bears on nothing but what is told of its two bodies together."""
-
     by: str = ""
 
 

@@ -35,45 +35,26 @@ class ForceStyle:
 
     object: str
     ee: str
-    start_s: float
-    """When it was struck or let go [s]."""
-
-    end_s: float
-    """Until when its motion was followed [s]."""
-
-    struck: bool
-    """Whether it was at rest before; else it was let go in motion."""
-
-    position_m: Vector
-    """Of its box's middle at the start [m]."""
-
-    velocity_mps: Vector
-    """Of the thing, just after the start [m/s]."""
-
-    striker_mps: Vector
-    """Of the end-effector, just before [m/s]."""
-
-    follow_mps: Vector
-    """Of the end-effector, just after [m/s]."""
-
+    start_s: float  #: When it was struck or let go [s]
+    end_s: float  #: Until when its motion was followed [s]
+    struck: bool  #: Whether it was at rest before; else it was let go in motion
+    position_m: Vector  #: Of its box's middle at the start [m]
+    velocity_mps: Vector  #: Of the thing, just after the start [m/s]
+    striker_mps: Vector  #: Of the end-effector, just before [m/s]
+    follow_mps: Vector  #: Of the end-effector, just after [m/s]
+    #: Between end-effector and thing, along the line of impact (eq. 3.5) [1]; None of a thing that
+    #: was let go
     restitution: float | None
-    """Between end-effector and thing, along the line of impact (eq. 3.5) [1]; None of a thing that
-    was let go."""
-
+    #: Deceleration over speed while it slid, along x and y [1/s]; None if it did not slide
     damping_per_s: tuple[float, float] | None
-    """Deceleration over speed while it slid, along x and y [1/s]; None if it did not slide."""
-
+    #: Slope of acceleration over velocity against time (eq. 3.9), the thesis's damping [1/s^2]
     thesis_damping: tuple[float, float] | None
-    """Slope of acceleration over velocity against time (eq. 3.9), the thesis's damping [1/s^2]."""
-
+    #: Restitution between the thing and what it fell on [1]; None if it did not bounce
     bounce: float | None
-    """Restitution between the thing and what it fell on [1]; None if it did not bounce."""
-
+    #: Momentum that it was given [N s]; None where its mass is not stated
     impulse_ns: Vector | None
-    """Momentum that it was given [N s]; None where its mass is not stated."""
-
+    #: Root mean square distance of its recorded places from the fitted motion [m]
     residual_m: float
-    """Root mean square distance of its recorded places from the fitted motion [m]."""
 
 
 BOTH = {"hand": "hands", "foot": "feet"}
@@ -86,15 +67,12 @@ MOST_SHOWN = 240  # so many letters of segments' names are shown in one line
 class Border:
     """Why a segment begins or ends: the relation that began or ended there."""
 
+    #: What changes there.
+    #: ``first``, ``last``; of a contact ``begins``, ``ends``; of a body ``starts_moving``,
+    #: ``stops_moving``, ``turns``, ``comes_to_rest``, ``leaves_rest``, ``reverses``,
+    #: ``levels``, ``begins_swinging``, ``ends_swinging``, ``tips``, ``rights``,
+    #: ``begins_looking``, ``ends_looking`` or ``shifts_weight``
     kind: str
-    """What changes there.
-
-    ``first``, ``last``; of a contact ``begins``, ``ends``; of a body ``starts_moving``,
-    ``stops_moving``, ``turns``, ``comes_to_rest``, ``leaves_rest``, ``reverses``,
-    ``levels``, ``begins_swinging``, ``ends_swinging``, ``tips``, ``rights``,
-    ``begins_looking``, ``ends_looking`` or ``shifts_weight``.
-    """
-
     body: str = ""
     other: str = ""
 
@@ -104,48 +82,28 @@ class Segment:
     """The motion of one link between two borders (thesis 4.3.2)."""
 
     ee: str
-    index: int
-    """Its number in the link, from zero."""
-
-    first: int
-    """Frame of the border where it begins."""
-
-    last: int
-    """Frame of the border where it ends; the next segment begins there."""
-
+    index: int  #: Its number in the link, from zero
+    first: int  #: Frame of the border where it begins
+    last: int  #: Frame of the border where it ends; the next segment begins there
     start_s: float
     end_s: float
-    name: str
-    """The most specific name that the rules give, or ``Unknown``."""
-
-    general: tuple[str, ...]
-    """What it specialises, nearest first."""
-
+    name: str  #: The most specific name that the rules give, or ``Unknown``
+    general: tuple[str, ...]  #: What it specialises, nearest first
+    #: Names that fit equally well, or, if unknown, those that fit furthest
     candidates: tuple[str, ...]
-    """Names that fit equally well, or, if unknown, those that fit furthest."""
-
-    level: str
-    """The feature at which an unknown segment parted from every known set; else empty."""
-
-    objects: tuple[str, ...]
-    """Dominant object first."""
-
-    possessed: bool
-    """Whether the end-effector possesses the dominant object."""
-
+    level: str  #: The feature at which an unknown segment parted from every known set; else empty
+    objects: tuple[str, ...]  #: Dominant object first
+    possessed: bool  #: Whether the end-effector possesses the dominant object
     features: FeatureSet
     begins: tuple[Border, ...]
     ends: tuple[Border, ...]
     purpose: str
+    #: Where its body is or goes: preposition, body, and the other body; sorted
     prepositions: tuple[tuple[str, str, str], ...] = ()
-    """Where its body is or goes: preposition, body, and the other body; sorted."""
-
+    #: Which of its objects the performer looks at, and when; sorted.
+    #: ``throughout``, at its ``start`` or ``end``, ``meanwhile`` and at neither, or ``before``: in
+    #: the segment that comes before it
     looks: tuple[tuple[str, str], ...] = ()
-    """Which of its objects the performer looks at, and when; sorted.
-
-    ``throughout``, at its ``start`` or ``end``, ``meanwhile`` and at neither, or ``before``: in
-    the segment that comes before it.
-    """
 
     @property
     def known(self) -> bool:
@@ -161,33 +119,22 @@ class ObservedLink:
     kind: str
     side: str
     segments: tuple[Segment, ...]
-    agent: str = ""
-    """Whose it is, where several agents perform; else empty."""
+    agent: str = ""  #: Whose it is, where several agents perform; else empty
 
 
 @dataclass(frozen=True, slots=True)
 class JointAction:
     """What several end-effectors do with one object as one action: the part that all share."""
 
-    name: str
-    """The most specific name that fits every segment in it."""
-
+    name: str  #: The most specific name that fits every segment in it
+    #: What all their segments are about; the object that all of them possess first
     objects: tuple[str, ...]
-    """What all their segments are about; the object that all of them possess first."""
-
+    #: Who takes part, sorted; whoever has several segments in it, as each foot in a walk, once for
+    #: each of them
     ees: tuple[str, ...]
-    """Who takes part, sorted; whoever has several segments in it, as each foot in a walk, once for
-    each of them."""
-
-    segments: tuple[int, ...]
-    """The index of each one's segment, in that order."""
-
-    first: int
-    """Frame from which all of them do it."""
-
-    last: int
-    """Frame to which they do."""
-
+    segments: tuple[int, ...]  #: The index of each one's segment, in that order
+    first: int  #: Frame from which all of them do it
+    last: int  #: Frame to which they do
     start_s: float
     end_s: float
 
@@ -221,16 +168,13 @@ class ObservedObject:
     name: str
     kind: str
     tag: str
+    #: Lengths along its own axes [m]; zero where it has no shape
     size_m: tuple[float, float, float]
-    """Lengths along its own axes [m]; zero where it has no shape."""
-
     shape: str
     assumed: str
+    #: Where it was in the first frame in which it is known [m]
     position_m: tuple[float, float, float]
-    """Where it was in the first frame in which it is known [m]."""
-
-    orientation: tuple[float, float, float, float]
-    """Unit quaternion w x y z there."""
+    orientation: tuple[float, float, float, float]  #: Unit quaternion w x y z there
 
 
 FrameOf = Literal["segments", "contacts", "facts"]
@@ -243,9 +187,7 @@ class Observation:
 
     capture: str
     profile: str
-    rules: str
-    """SHA-256 of the rule base."""
-
+    rules: str  #: SHA-256 of the rule base
     version: str
     agent: Agent
     duration_s: float
@@ -255,37 +197,24 @@ class Observation:
     links: tuple[ObservedLink, ...]
     facts: tuple[Fact, ...]
     upars: tuple[Upar, ...]
-    ipars: tuple[Ipar, ...]
-    """One for each segment, links in order."""
-
+    ipars: tuple[Ipar, ...]  #: One for each segment, links in order
     complex_par: ComplexPar
     locations: tuple[ConstraintLocation, ...]
     styles: tuple[Style, ...]
     sources: tuple[Source, ...]
     notices: tuple[Notice, ...]
+    #: What several end-effectors did with one object as one action, in order of time
     joint: tuple[JointAction, ...] = ()
-    """What several end-effectors did with one object as one action, in order of time."""
-
+    #: Which segments are one action, or serve another one; sorted
     relations: tuple[SegmentRelation, ...] = ()
-    """Which segments are one action, or serve another one; sorted."""
-
-    others: tuple[Agent, ...] = ()
-    """Who else performed, where several agents did."""
-
+    others: tuple[Agent, ...] = ()  #: Who else performed, where several agents did
+    #: What was decided once for the whole recording; None where it was not kept
     calibration: Calibration | None = None
-    """What was decided once for the whole recording; None where it was not kept."""
-
-    guides: tuple[GuideLocation, ...] = ()
-    """The hinges and rails on which objects move, by object."""
-
+    guides: tuple[GuideLocation, ...] = ()  #: The hinges and rails on which objects move, by object
+    #: What set things going that then moved on alone, in order of time
     forces: tuple[ForceStyle, ...] = ()
-    """What set things going that then moved on alone, in order of time."""
-
-    tracks: tuple[SampledTrack, ...] = ()
-    """Where each sensor and object was throughout, by name."""
-
-    naming: tuple[NamingRule, ...] = ()
-    """The rules that named its segments, by name."""
+    tracks: tuple[SampledTrack, ...] = ()  #: Where each sensor and object was throughout, by name
+    naming: tuple[NamingRule, ...] = ()  #: The rules that named its segments, by name
 
     @property
     def segments(self) -> tuple[Segment, ...]:
@@ -349,11 +278,8 @@ class SegmentAddress:
     """Which segment is meant: of which end-effector, counted from zero, in which capture."""
 
     ee: str
-    index: int
-    """Its number in the link, from zero."""
-
-    capture: str = ""
-    """Name or path of the capture; empty where there is only one."""
+    index: int  #: Its number in the link, from zero
+    capture: str = ""  #: Name or path of the capture; empty where there is only one
 
     def __post_init__(self) -> None:
         """Check that the address can be read back from its text.

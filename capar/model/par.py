@@ -22,9 +22,8 @@ class FeatureSet:
     rel_start: str
     rel_end: str
     change_loc: str
+    #: General type: ``hand``, ``foot`` ...; ``any`` where a primitive is open to all
     end_effector: str
-    """General type: ``hand``, ``foot`` ...; ``any`` where a primitive is open to all."""
-
     force: str
 
     def __post_init__(self) -> None:
@@ -48,12 +47,8 @@ class FeatureSet:
 class Condition:
     """Something that holds or does not in the world: a contact, a posture, a time, a capability."""
 
-    kind: str
-    """``contact``, ``posture``, ``duration`` or ``capable``."""
-
-    arguments: tuple[str, ...]
-    """Names or parameters that it is about: ``("EE", "obj1")``."""
-
+    kind: str  #: ``contact``, ``posture``, ``duration`` or ``capable``
+    arguments: tuple[str, ...]  #: Names or parameters that it is about: ``("EE", "obj1")``
     holds: bool = True
 
 
@@ -79,19 +74,16 @@ class Constraint:
     """What the core semantics constrain (thesis Fig 4.16)."""
 
     features: FeatureSet
+    #: The two in the relation that ends the action: -1 the end-effector, else an object's index
     colliding_objects: tuple[int, int]
-    """The two in the relation that ends the action: -1 the end-effector, else an object's index."""
 
 
 @dataclass(frozen=True, slots=True)
 class PathPoint:
     """A significant place of the end-effector inside a segment (thesis Fig 4.11)."""
 
-    time: float
-    """Share of the segment's duration [1]."""
-
-    position: tuple[float, float, float]
-    """World position of the end-effector [m]."""
+    time: float  #: Share of the segment's duration [1]
+    position: tuple[float, float, float]  #: World position of the end-effector [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,9 +93,8 @@ class Style:
     action: str
     purpose: str
     ee: str
+    #: Share of the way covered, at equal steps of time from 0 to 1 (thesis eq. 4.1)
     velocity: tuple[float, ...]
-    """Share of the way covered, at equal steps of time from 0 to 1 (thesis eq. 4.1)."""
-
     path: tuple[PathPoint, ...]
 
 
@@ -121,29 +112,16 @@ class CoreSemantics:
     """An action's primary components of meaning (thesis 4.1.1)."""
 
     motion: Motion
-    moved: str
-    """The parameter or object that moves; empty if none does."""
-
-    causal: bool
-    """Whether the agent causes that motion."""
-
-    force: tuple[str, ...]
-    """The objects that force is applied to."""
-
+    moved: str  #: The parameter or object that moves; empty if none does
+    causal: bool  #: Whether the agent causes that motion
+    force: tuple[str, ...]  #: The objects that force is applied to
+    #: Where the moved object, or else the end-effector, begins and ends [m]; empty in a UPAR
     path: tuple[tuple[float, float, float], ...]
-    """Where the moved object, or else the end-effector, begins and ends [m]; empty in a UPAR."""
-
     purpose: str
-    enables: tuple[str, ...]
-    """Names of the actions that this one makes possible."""
-
+    enables: tuple[str, ...]  #: Names of the actions that this one makes possible
     termination: tuple[Condition, ...]
-    duration_s: float | None
-    """None in a UPAR, whose duration is a parameter."""
-
-    manner: str
-    """Whose style it has; empty in a UPAR."""
-
+    duration_s: float | None  #: None in a UPAR, whose duration is a parameter
+    manner: str  #: Whose style it has; empty in a UPAR
     constraint: Constraint
 
 
@@ -153,19 +131,14 @@ class Upar:
 
     name: str
     agent: str
-    objects: tuple[str, ...]
-    """Parameters, dominant object first: ``obj1``, ``obj2``."""
-
-    general: tuple[str, ...]
-    """The more general actions that it specialises, nearest first."""
-
+    objects: tuple[str, ...]  #: Parameters, dominant object first: ``obj1``, ``obj2``
+    general: tuple[str, ...]  #: The more general actions that it specialises, nearest first
     applicability: tuple[Condition, ...]
     preparation: tuple[Preparation, ...]
     steps: tuple[Call, ...]
     core: CoreSemantics
     post_assertions: tuple[Condition, ...]
-    parent: str = ""
-    """The complex action that it was observed in."""
+    parent: str = ""  #: The complex action that it was observed in
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,17 +147,13 @@ class Ipar:
 
     upar: str
     agent: str
-    ee: str
-    """The specific end-effector: ``right_hand``."""
-
+    ee: str  #: The specific end-effector: ``right_hand``
     objects: tuple[str, ...]
     start_s: float
     core: CoreSemantics
     preparation: tuple[Preparation, ...]
     post_assertions: tuple[Condition, ...]
-    posture: str = ""
-    """Name of the posture that it ends in, where it ends in no contact."""
-
+    posture: str = ""  #: Name of the posture that it ends in, where it ends in no contact
     parent: str = ""
 
 
@@ -193,20 +162,12 @@ class Step:
     """One sub-action of a complex PAR, with the parameters of thesis 4.6.2."""
 
     action: str
-    ee: str
-    """The link's end-effector, or ``all`` for a step common to every link."""
-
+    ee: str  #: The link's end-effector, or ``all`` for a step common to every link
     objects: tuple[str, ...]
-    share: float
-    """Its part of the whole duration [1]."""
-
+    share: float  #: Its part of the whole duration [1]
     purpose: str
-    begin: float
-    """Where it begins, as a share of the whole duration [1]."""
-
-    segments: tuple[int, ...]
-    """Indices of the observed segments that it stands for."""
-
+    begin: float  #: Where it begins, as a share of the whole duration [1]
+    segments: tuple[int, ...]  #: Indices of the observed segments that it stands for
     posture: str = ""
 
 
@@ -235,9 +196,7 @@ class ComplexPar:
     objects: tuple[str, ...]
     duration_s: float
     links: tuple[LinkSteps, ...]
-    common: Step | None
-    """The ResumePosture that ends every link, if all end in one."""
-
+    common: Step | None  #: The ResumePosture that ends every link, if all end in one
     relations: tuple[Relation, ...]
 
     @property
@@ -264,9 +223,7 @@ class ComplexPar:
 class Threshold:
     """A number that rules decide by."""
 
-    name: str
-    """With its unit at its end: ``height_mm``."""
-
+    name: str  #: With its unit at its end: ``height_mm``
     value: int
 
 
@@ -275,13 +232,9 @@ class NamingRule:
     """What defines a name of segments in the rule base that named them."""
 
     name: str
-    file: str
-    """The rule file, by its folder and its name."""
-
-    sha256: str
-    """Of the file's text."""
-
+    file: str  #: The rule file, by its folder and its name
+    sha256: str  #: Of the file's text
     text: str
+    #: Those that the definition reads, and the vocabulary that it names, by name; those by which
+    #: segments are cut are not among them
     thresholds: tuple[Threshold, ...]
-    """Those that the definition reads, and the vocabulary that it names, by name; those by which
-    segments are cut are not among them."""
