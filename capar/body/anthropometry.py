@@ -2,7 +2,7 @@
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from statistics import NormalDist
@@ -39,6 +39,7 @@ STATURES_M = (0.9, 2.3)  # statures for which estimates are made [m]
 GROWN = 18.0  # age from which on the adults' tables hold [years]
 CHILD = 9.0  # age of the children's table [years]
 
+ADULTS = {"male": "man", "female": "woman"}  # names of the adults' tables
 LEAST_TRUNK = 0.25
 """Least height of cervicale above the hips [share of stature]; 0.33 to 0.36 is usual."""
 
@@ -85,11 +86,6 @@ class Measures:
         return self.values[name]
 
     @property
-    def estimated(self) -> frozenset[str]:
-        """The measures that were estimated."""
-        return frozenset(self.values) - self.given
-
-    @property
     def hip_height(self) -> float:
         """Height of the hip joints when standing [m]."""
         return self.values["ankle_height"] + self.values["shank"] + self.values["thigh"]
@@ -97,12 +93,12 @@ class Measures:
     @property
     def adult_share(self) -> float:
         """How far between the nine-year-old's proportions (0) and an adult's (1) [1]."""
-        return min(max((self.age - CHILD) / (GROWN - CHILD), 0.0), 1.0)
+        return _adult_share(self.age)
 
     @property
     def adult(self) -> str:
         """Name of the adults' table: ``man`` or ``woman``."""
-        return "man" if self.sex == "male" else "woman"
+        return ADULTS[self.sex]
 
 
 def estimate_measures(
@@ -123,13 +119,20 @@ def estimate_measures(
     Raises:
         MeasuresError, UnknownNameError: Measures of no body, or unknown ones.
     """
-    known = dict(given or {})
-    _check(sex, age, percentile, known)
-    blank = Measures.__new__(Measures)
-    object.__setattr__(blank, "age", age)
-    object.__setattr__(blank, "sex", sex)
-    share, adult = blank.adult_share, blank.adult
-    stature = known.get("stature") or _stature(adult, sex, age, share, percentile)
+    known, tables = dict(given or {}), table("anthropometry")
+    if sex not in ADULTS:
+        raise UnknownNameError("sex", sex, ADULTS)
+    for name in known:
+        if name not in measure_names():
+            raise UnknownNameError("measure", name, measure_names())
+    if age < tables["growth"]["first_age"]:
+        raise MeasuresError(f"age {age}; the tables begin at 6 years")
+    if percentile is not None and not 0.0 < percentile < 100.0:
+        raise MeasuresError(f"percentile {percentile}; it lies between 0 and 100")
+    if percentile is not None and "stature" in known:
+        raise MeasuresError("stature and its percentile are both given; give one")
+    share, adult = _adult_share(age), ADULTS[sex]
+    stature = known.get("stature") or _stature(sex, age, percentile or 50.0)
     if not STATURES_M[0] <= stature <= STATURES_M[1]:
         raise MeasuresError(f"stature {stature:.3f} m; estimates are made from 0.9 to 2.3 m")
     values, deviations = {}, {}
@@ -153,12 +156,9 @@ def ready_made(name: str) -> Measures:
     if name not in kinds:
         raise UnknownNameError("ready-made agent", name, kinds)
     sex, age = kinds[name]
-    if name == "child":
-        stature = table("anthropometry")["child"]["stature"]["percentiles"][1]
-        made = estimate_measures(sex=sex, age=age, given={"stature": stature})
-    else:
-        made = estimate_measures(sex=sex, age=age, percentile=50.0)
-    return Measures(sex, age, made.values, frozenset(), made.deviations)
+    median = table("anthropometry")[name]["stature"]["percentiles"][1]
+    given = {"stature": median} if name == "child" else None
+    return replace(estimate_measures(sex=sex, age=age, given=given), given=frozenset())
 
 
 def measures_of(agent: Agent) -> Measures:
@@ -170,32 +170,21 @@ def measures_of(agent: Agent) -> Measures:
     return estimate_measures(sex=sex, age=agent.measures.get("age", age), given=stated)
 
 
-def _check(sex: str, age: float, percentile: float | None, known: Mapping[str, float]) -> None:
-    if sex not in {"male", "female"}:
-        raise UnknownNameError("sex", sex, ("male", "female"))
-    for name in known:
-        if name not in measure_names():
-            raise UnknownNameError("measure", name, measure_names())
-    if age < table("anthropometry")["growth"]["first_age"]:
-        raise MeasuresError(f"age {age}; the tables begin at 6 years")
-    if percentile is not None and not 0.0 < percentile < 100.0:
-        raise MeasuresError(f"percentile {percentile}; it lies between 0 and 100")
-    if percentile is not None and "stature" in known:
-        raise MeasuresError("stature and its percentile are both given; give one")
+def _adult_share(age: float) -> float:
+    return min(max((age - CHILD) / (GROWN - CHILD), 0.0), 1.0)
 
 
-def _stature(adult: str, sex: str, age: float, share: float, percentile: float | None) -> float:
+def _stature(sex: str, age: float, percentile: float) -> float:
     """Stature from a percentile, by normal distribution about the median of that age [m]."""
-    tables = table("anthropometry")
-    growth = tables["growth"][sex]
+    tables, adult, share = table("anthropometry"), ADULTS[sex], _adult_share(age)
+    growth, place = tables["growth"][sex], age - tables["growth"]["first_age"]
     median = tables[adult]["stature"]["percentiles"][1]
     if age < GROWN:
-        place = age - tables["growth"]["first_age"]
         index = min(int(place), len(growth) - 2)
         median = growth[index] + (place - index) * (growth[index + 1] - growth[index])
     young, grown = (_deviation(tables[each]["stature"]) for each in ("child", adult))
     deviation = (1.0 - share) * young + share * grown
-    return median + deviation * NormalDist().inv_cdf((percentile or 50.0) / 100.0)
+    return median + deviation * NormalDist().inv_cdf(percentile / 100.0)
 
 
 def _estimated(name: str, population: str, stature: float) -> tuple[float, float]:

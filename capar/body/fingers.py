@@ -1,6 +1,6 @@
 """How far hands are closed, by the recorded joints of their fingers."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -44,23 +44,26 @@ def closed_hands(
         wrist = next((n for n, name in names.items() if name.place == f"{side}_hand"), None)
         if wrist is None:
             continue
-        chains = _chains(points, names, side, points[wrist])
         turns = geometry.rotations(human.sites(motion, [f"{side}_hand"])[f"{side}_hand"][1]).inv()
         flip = np.array([1.0, 1.0 if side == "right" else -1.0, 1.0])
+        chains = _chains(points, names, side, points[wrist])
+        thumb = chains.pop(THUMB, None)
+        # Angles of the bones of each finger to the straight hand, towards the palm.
         bones = [
-            [flip * turns.apply(points[end] - points[start]) for start, end in pairwise(chain)]
-            for finger, chain in chains.items()
-            if finger != THUMB
+            [
+                np.arctan2(bone[:, 1], -bone[:, 2])
+                for start, end in pairwise(chain)
+                for bone in [flip * turns.apply(points[end] - points[start])]
+            ]
+            for chain in chains.values()
         ]
         if not bones:
             continue
-        angles = {"knuckle_flexion": _median(_flexion(chain[0]) for chain in bones)}
-        further = [_flexion(chain[1]) - _flexion(chain[0]) for chain in bones if len(chain) > 1]
-        if further:
-            angles["finger_flexion"] = _median(further)
-        if THUMB in chains:
-            first, *_, last = chains[THUMB]
-            way = flip * turns.apply(points[last] - points[first])
+        angles = {"knuckle_flexion": np.median([bone[0] for bone in bones], axis=0)}
+        if further := [bone[1] - bone[0] for bone in bones if len(bone) > 1]:
+            angles["finger_flexion"] = np.median(further, axis=0)
+        if thumb:
+            way = flip * turns.apply(points[thumb[-1]] - points[thumb[0]])
             angles["thumb_opposition"] = np.arctan2(way[:, 1], way[:, 0]) - THUMB_AHEAD
         for hinge, angle in angles.items():
             seen = np.flatnonzero(np.isfinite(angle))
@@ -75,35 +78,20 @@ def _chains(
     points: Points, names: Mapping[str, BodyName], side: str, wrist: Float[np.ndarray, "frames 3"]
 ) -> dict[str, list[str]]:
     """By finger, two points of it or more, from the knuckle on, that begin on this hand."""
-
-    def away(name: str) -> Float[np.ndarray, "frames"]:
-        return np.asarray(np.linalg.norm(points[name] - wrist, axis=1))
-
-    hand = [
-        n
-        for n, name in names.items()
-        if without_side(name.place) in PLACES and name.side in (side, "none")
-    ]
-    out = {}
-    for word in (*FINGERS, THUMB):
-        chain = [
-            name
-            for name in sorted(hand)
-            if word in name.lower() and np.nanmax(away(name)) < REACH_M
-        ]
-        if len(chain) > 1 and np.nanstd(away(chain[0])) < RIGID_M:
-            out[word] = chain
-    begin = {word: float(np.nanmedian(away(chain[0]))) for word, chain in out.items()}
-    fingers = [metres for word, metres in begin.items() if word != THUMB]
-    if THUMB in out and (not fingers or begin[THUMB] > THUMB_SHARE * float(np.median(fingers))):
+    away = {
+        name: np.linalg.norm(points[name] - wrist, axis=1)
+        for name, body in sorted(names.items())
+        if without_side(body.place) in PLACES and body.side in (side, "none")
+    }
+    near = [name for name, metres in away.items() if np.nanmax(metres) < REACH_M]
+    chains = {word: [n for n in near if word in n.lower()] for word in (*FINGERS, THUMB)}
+    out = {
+        word: chain
+        for word, chain in chains.items()
+        if len(chain) > 1 and np.nanstd(away[chain[0]]) < RIGID_M
+    }
+    begin = {word: float(np.nanmedian(away[chain[0]])) for word, chain in out.items()}
+    thumb, fingers = begin.pop(THUMB, 0.0), list(begin.values())
+    if thumb and (not fingers or thumb > THUMB_SHARE * float(np.median(fingers))):
         del out[THUMB]
     return out
-
-
-def _flexion(bone: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
-    """The angle of a finger's bone to the straight hand, towards the palm [rad]."""
-    return np.asarray(np.arctan2(bone[:, 1], -bone[:, 2]))
-
-
-def _median(angles: Iterable[Float[np.ndarray, "frames"]]) -> Float[np.ndarray, "frames"]:
-    return np.asarray(np.median(np.stack(list(angles)), axis=0))

@@ -5,6 +5,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.body.human import Human
+from capar.model import geometry
 
 EYES = ("right_pupil", "left_pupil")
 LOOK_COST = 4.0  # weight of a radian that a line of sight misses its point by
@@ -38,11 +39,5 @@ def lines_of_sight(
     """From where one looks [m], and in which direction: the mean of both eyes."""
     sites = human.sites(motion, EYES)
     spots = np.mean([sites[eye][0] for eye in EYES], axis=0)
-    ways = np.sum([_forward(sites[eye][1]) for eye in EYES], axis=0)
+    ways = np.sum([geometry.rotations(sites[e][1]).apply([1.0, 0.0, 0.0]) for e in EYES], axis=0)
     return spots, ways / np.linalg.norm(ways, axis=-1, keepdims=True)
-
-
-def _forward(quaternions: Float[np.ndarray, "*frames 4"]) -> Float[np.ndarray, "*frames 3"]:
-    """The x axes of orientations w x y z."""
-    w, x, y, z = np.moveaxis(quaternions, -1, 0)
-    return np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=-1)

@@ -104,7 +104,12 @@ def fit_joints(
     places = _believed(points, convention.named(points), stated or {})
     known = Guidance(standing_flat(points, places), ground_m, faces)
     measures = with_ankles(measures_from_points(points, places), points, places, known)
-    weights = {name: _weight(convention, place, places) for name, place in places.items()}
+    weights = {
+        name: WEIGHTS.get(without_side(place), convention.weight(place))
+        for name, place in places.items()
+    }
+    if "right_eye" in places.values():
+        weights |= {n: HEAD_BY_EYES for n, place in places.items() if place == "head"}
     names = {n: BodyName(n, place, exact=True, by=convention.title) for n, place in places.items()}
     frames = sample_frames(points, names)
     sampled = {name: points[name][frames] for name in places}
@@ -142,12 +147,6 @@ def _fit(
     return fit_points(with_markers(measures, local, names), points, found, by_place, guidance)
 
 
-def _weight(convention: Convention, place: str, places: Mapping[str, str]) -> float:
-    if place == "head" and "right_eye" in places.values():
-        return HEAD_BY_EYES
-    return WEIGHTS.get(without_side(place), convention.weight(place))
-
-
 def _believed(
     points: Points, named: Mapping[str, str], stated: Mapping[str, str]
 ) -> dict[str, str]:
@@ -179,9 +178,9 @@ def _settled(
     """Rigid places; those of a head without eyes moved to where its joint is in the postures."""
     heads = {name for name in shaped if names[name].place == "head"}
     joint = next((name for name in heads if places[name] == "head"), None)
-    if joint is None or any(places[name].endswith("_eye") for name in heads):
-        return dict(shaped)
-    moved = local_places(first, points, {joint: names[joint]})[joint] - shaped[joint]
+    moved = np.zeros(3)
+    if joint is not None and not any(places[name].endswith("_eye") for name in heads):
+        moved = local_places(first, points, {joint: names[joint]})[joint] - shaped[joint]
     return {name: spot + moved if name in heads else spot for name, spot in shaped.items()}
 
 

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -103,7 +104,12 @@ def fit_markers(
     """
     seen = {n: each for n, each in names.items() if n in points and not np.isnan(points[n]).all()}
     exact = {name: each for name, each in seen.items() if each.exact and is_sided(each)}
-    clusters = _clusters(seen)
+    riding = [each.place for each in seen.values() if is_sided(each) and not each.exact]
+    clusters = {
+        segment: [n for n, e in seen.items() if is_sided(e) and not e.exact and e.place == segment]
+        for segment, count in Counter(riding).items()
+        if count >= LEAST_CLUSTER
+    }
     if len(exact) + len(clusters) < LEAST_EXACT:
         raise SkeletonError(
             f"{len(exact)} markers at known places of the body ({', '.join(sorted(exact))}) and "
@@ -130,7 +136,10 @@ def fit_markers(
     local = local_places(first, sampled, seen)
     joints = {} if ease == 1.0 else _joints(first, sampled, seen)
     if len(joints) >= LEAST_EXACT:
-        measures, local = _measures_by_joints(measures, joints, known.at(frames)), {}
+        own, local = {name: name for name in joints}, {}
+        with suppress(SkeletonError):
+            measures = measures_from_points(joints, own)
+            measures = with_ankles(measures, joints, own, known.at(frames))
     else:
         joints = {}
     for _ in range(ROUNDS):
@@ -237,24 +246,6 @@ def _leg_lengths(joints: Points, measures: Measures, legs: Iterable[str]) -> dic
     return found
 
 
-def _measures_by_joints(measures: Measures, joints: Points, guidance: Guidance) -> Measures:
-    """Measures by the centres of joints; the same ones if they tell no limb's length."""
-    places = {name: name for name in joints}
-    try:
-        return with_ankles(measures_from_points(joints, places), joints, places, guidance)
-    except SkeletonError:
-        return measures
-
-
-def _clusters(names: Mapping[str, BodyName]) -> dict[str, list[str]]:
-    """Markers that ride on a segment, by the segment, where it has two or more."""
-    out: dict[str, list[str]] = {}
-    for name, each in names.items():
-        if is_sided(each) and not each.exact:
-            out.setdefault(each.place, []).append(name)
-    return {segment: group for segment, group in out.items() if len(group) >= LEAST_CLUSTER}
-
-
 def _by_landmarks(
     measures: Measures,
     points: Points,
@@ -289,7 +280,14 @@ def measures_from_markers(
     for name, each in names.items():
         places.setdefault(each.place, points[name])
     found = {}
-    for measure, pairs in _pairs().items():
+    pairs_of = {
+        measure: [(f"{side}_{a}", f"{side}_{b}") for a, b in pairs for side in SIDES]
+        for measure, pairs in SPANS.items()
+    } | {
+        measure: [(f"right_{place}", f"left_{place}") for place in paired]
+        for measure, paired in BREADTHS.items()
+    }
+    for measure, pairs in pairs_of.items():
         known = []
         for first, second in pairs:
             if first in places and second in places:
@@ -304,15 +302,3 @@ def measures_from_markers(
         made = usual
     share = trunk_share(places, Human.of(made))
     return made if share is None else with_trunk(made, share)
-
-
-def _pairs() -> dict[str, list[tuple[str, str]]]:
-    """By measure, the pairs of places that it lies between, both sides in a row."""
-    out = {
-        measure: [(f"{side}_{a}", f"{side}_{b}") for a, b in pairs for side in SIDES]
-        for measure, pairs in SPANS.items()
-    }
-    return out | {
-        measure: [(f"right_{place}", f"left_{place}") for place in places]
-        for measure, places in BREADTHS.items()
-    }
