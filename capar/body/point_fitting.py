@@ -164,16 +164,21 @@ def _followed(
     ease.set_target(start)
     tasks = [task, ease, mink.DampingTask(human.model, cost=DAMPING_COST)]
     level = {side: DirectionTask(f"{side}_foot", FLAT_COST) for side in guidance.flat}
-    height = {} if guidance.ground_m is None else {side: _on_ground(human, side, guidance.ground_m)
-                                                   for side in guidance.flat}  # fmt: skip
+    height: dict[str, mink.FrameTask] = {}
     for side, flat in level.items():
-        tasks += [flat, *([height[side]] if height else [])]
-    segments = {segment_of(human, place) for place in places.values()}
-    tasks += _hanging(segments) + _above_ground(human, guidance.ground_m)
+        tasks.append(flat)
+        if guidance.ground_m is not None:
+            height[side] = mink.FrameTask(f"{side}_foot", "body", 0.0, 0.0)
+            ankle = np.array([0.0, 0.0, guidance.ground_m + human.measures["ankle_height"]])
+            height[side].set_target(mink.SE3.from_translation(ankle))
+            tasks.append(height[side])
+    tasks += _unseen(human, {segment_of(human, place) for place in places.values()}, guidance)
     face = DirectionTask("head", FACE_COST, (1.0, 0.0, 0.0))
     tasks += [] if guidance.faces is None else [face]
-    if not any(_on_leg(segment) for segment in segments):
-        tasks += _stance(human, start, roams=_roams(targets))
+    # Where a thigh begins is the pelvis's to say.
+    joints = {without_side(segment_of(human, place)) for place in places.values()} - {"thigh"}
+    if not any(parts().get(joint) in {"thigh", "shank", "foot"} for joint in joints):
+        tasks += _stance(human, start, targets)
     limits = joint_limits(human, LARGEST_STEP)
     configuration = mink.Configuration(human.model)
     out = np.empty((len(seen), len(start)))
@@ -196,60 +201,41 @@ def _followed(
     return out
 
 
-def _on_ground(human: Human, side: str, ground_m: float) -> mink.FrameTask:
-    """A task that has a foot's ankle at its height above the ground."""
-    task = mink.FrameTask(f"{side}_foot", "body", 0.0, 0.0)
-    ankle = [0.0, 0.0, ground_m + human.measures["ankle_height"]]
-    task.set_target(mink.SE3.from_translation(np.array(ankle)))
-    return task
-
-
 def segment_of(human: Human, place: str) -> str:
     """The segment of the body that a place is on; a segment is its own."""
     site = next((s for s in range(human.model.nsite) if human.model.site(s).name == place), -1)
     return place if site < 0 else str(human.model.body(human.model.site_bodyid[site]).name)
 
 
-def _on_leg(segment: str) -> bool:
-    """Whether a segment is of a leg; where a thigh begins is the pelvis's to say."""
-    joint = without_side(segment)
-    return joint != "thigh" and parts().get(joint) in {"thigh", "shank", "foot"}
-
-
-def _hanging(segments: Collection[str]) -> list[mink.Task]:
-    """Tasks that let arms hang and keep a head upright of which nothing is seen."""
-    arms: list[mink.Task] = [
+def _unseen(human: Human, segments: Collection[str], guidance: Guidance) -> list[mink.Task]:
+    """Unseen arms hang, an unseen head is upright, heels and toes are not in a known ground."""
+    tasks: list[mink.Task] = [
         DirectionTask(f"{side}_upper_arm", HANGING_COST)
         for side in SIDES
-        if not {f"{side}_{name}" for name in ("forearm", "hand")} & set(segments)
+        if not {f"{side}_forearm", f"{side}_hand"} & set(segments)
     ]
-    head = [] if {"head", "neck"} & set(segments) else [DirectionTask("head", HEAD_COST)]
-    return [*arms, *head]
+    if not {"head", "neck"} & set(segments):
+        tasks.append(DirectionTask("head", HEAD_COST))
+    if guidance.ground_m is not None:
+        places = [f"{side}_{place}" for side in SIDES for place in SOLE_PLACES]
+        standing = human.sites(human.posture()[None], places)
+        low = {n: guidance.ground_m + SOLE_SHARE * float(p[0, 2]) for n, (p, _) in standing.items()}
+        tasks.append(GroundTask(human.model, low, GROUND_COST))
+    return tasks
 
 
-def _above_ground(human: Human, ground_m: float | None) -> list[mink.Task]:
-    """A task that keeps heels and toes out of the ground, where its height is known."""
-    if ground_m is None:
-        return []
-    places = [f"{side}_{place}" for side in SIDES for place in SOLE_PLACES]
-    standing = human.sites(human.posture()[None], places)
-    low = {name: ground_m + SOLE_SHARE * float(one[0][0, 2]) for name, one in standing.items()}
-    return [GroundTask(human.model, low, GROUND_COST)]
-
-
-def _roams(targets: Float[np.ndarray, "frames points 3"]) -> bool:
-    """Whether a body is somewhere else for long, as one is who walks."""
-    seen = targets[np.isfinite(targets).all(axis=2).any(axis=1)]
-    middle = np.nanmean(seen[..., :2], axis=1)
-    low, high = np.quantile(middle, [0.05, 0.95], axis=0)
-    return bool(np.linalg.norm(high - low) > ROAMING_M)
-
-
-def _stance(human: Human, start: Float[np.ndarray, "posture"], *, roams: bool) -> list[mink.Task]:
+def _stance(
+    human: Human,
+    start: Float[np.ndarray, "posture"],
+    targets: Float[np.ndarray, "frames points 3"],
+) -> list[mink.Task]:
     """Tasks of a body of whose legs nothing is seen: pelvis upright, feet flat as at first.
 
     They are on one spot unless it roams. Else who bends forward would tilt as one piece.
     """
+    seen = targets[np.isfinite(targets).all(axis=2).any(axis=1)]
+    low, high = np.quantile(np.nanmean(seen[..., :2], axis=1), [0.05, 0.95], axis=0)
+    roams = np.linalg.norm(high - low) > ROAMING_M
     upright = np.array(start)
     w, _, _, z = start[3:7] / np.linalg.norm(start[3:7])
     upright[3:7] = np.array([w, 0.0, 0.0, z]) / np.hypot(w, z)
@@ -272,7 +258,12 @@ def _start(
     standing = human.posture(bent)
     where = human.sites(standing[None], set(named.values()))
     known = [name for name in named if np.isfinite(spots[name][frame]).all()]
-    trunk = [n for n in known if _steady(named[n])]
+    trunk = [  # on it, or where a limb hangs on it
+        n
+        for n in known
+        if without_side(named[n]) in {"thigh", "upper_arm"}
+        or parts().get(without_side(named[n])) in {"trunk", "pelvis"}
+    ]
     used = trunk if len(trunk) >= 3 else known
     if len(used) < 3:
         raise SkeletonError(f"{len(used)} points at once; three or more place the body")
@@ -283,12 +274,6 @@ def _start(
     out[:3] = world.mean(axis=0) + turn.apply(standing[:3] - body.mean(axis=0))
     out[3:7] = turn.as_quat(scalar_first=True)
     return out
-
-
-def _steady(place: str) -> bool:
-    """Whether a place is on the trunk, or is where a limb hangs on it."""
-    joint = without_side(place) in {"thigh", "upper_arm"}
-    return joint or parts().get(without_side(place)) in {"trunk", "pelvis"}
 
 
 def measures_from_points(

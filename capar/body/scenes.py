@@ -1,6 +1,6 @@
 """Scenes of a performer: the shapes and places of objects, and how palms lie on them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
@@ -32,7 +32,7 @@ the box, and with it the forearm [m]."""
 YAWS = (0.0, -0.35, -0.7, -1.05, 0.35)
 """Directions of the fingers tried on a round object, outwards positive [rad]."""
 
-ROLLS, PITCHES = (0.0, 0.7, 1.2, 1.4, 1.57), (0.0, 0.25, 0.5)
+ROLLS, PITCHES = (0.0, 0.7, 1.2, 1.4, 1.57), (0.25, 0.5)
 """How far the fingers on an object's near side lean outwards from upright, and how far they rise
 above the level at its side [rad]."""
 
@@ -191,52 +191,38 @@ def grips(thing: Thing, side: str, kind: str, measures: Measures) -> list[RigidT
     They are at the ``side`` (thumb up, fingers forward), on ``top``, or on the ``back`` that faces
     the performer (fingers upwards); the object's x axis leads away from the performer.
     """
-    if kind == "top":
-        return [_top_grip(thing, side, measures, yaw) for yaw in YAWS]
-    if kind == "back":
-        return [_back_grip(thing, side, measures, roll) for roll in ROLLS]
-    turns = YAWS if thing.round else YAWS[:1]
-    level = [_side_grip(thing, side, measures, yaw, PITCHES[0]) for yaw in turns]
-    raised = [
-        _side_grip(thing, side, measures, yaw, pitch) for yaw in turns for pitch in PITCHES[1:]
-    ]
-    top = thing.shape.bounds[1, 2]
-    return [*level, *(each for each in raised if each.translation[2] < top)]
-
-
-def _side_grip(
-    thing: Thing, side: str, measures: Measures, yaw: float, pitch: float
-) -> RigidTransform:
-    """A hand at its own side, turned outwards by yaw, its fingers raised by pitch [rad]."""
     sign, hand_m = 1.0 if side == "right" else -1.0, measures["hand_length"]
-    turn = Rotation.from_euler("z", -sign * yaw)
-    inwards = turn.apply([0.0, sign, 0.0])
-    fingers = turn.apply([np.cos(pitch), 0.0, np.sin(pitch)])
     low, high = thing.shape.bounds
-    reach = (-low[1] if side == "right" else high[1]) + AIR_M
-    place = np.array([0.0, 0.0, _clear_height(thing, hand_m, pitch)]) - inwards * reach
-    if not thing.round:
-        wrist = PALM_FROM_WRIST * np.cos(pitch) * hand_m
-        place[0] = min(0.0, low[0] - WRIST_OUT_M + wrist)
+    out = []
+    if kind == "top":  # fingers forward, turned outwards
+        for yaw in YAWS:
+            fingers = Rotation.from_euler("z", sign * yaw).apply([1.0, 0.0, 0.0])
+            place = np.array([0.0, 0.0, high[2] + AIR_M]) - 0.1 * hand_m * fingers
+            out.append(_grip(place, fingers, [0.0, 0.0, -1.0]))
+    elif kind == "back":  # fingers leaning outwards from upright
+        for roll in ROLLS:
+            place = np.array([low[0] - AIR_M, 0.0, _clear_height(thing, hand_m, roll)])
+            fingers = np.array([0.0, -sign * np.sin(roll), np.cos(roll)])
+            out.append(_grip(place, fingers, [1.0, 0.0, 0.0]))
+    else:  # turned outwards, then with the fingers raised
+        yaws = YAWS if thing.round else YAWS[:1]
+        tried = [(yaw, 0.0) for yaw in yaws]
+        for yaw, pitch in [*tried, *((yaw, pitch) for yaw in yaws for pitch in PITCHES)]:
+            turn = Rotation.from_euler("z", -sign * yaw)
+            inwards = turn.apply([0.0, sign, 0.0])
+            reach = (-low[1] if side == "right" else high[1]) + AIR_M
+            place = np.array([0.0, 0.0, _clear_height(thing, hand_m, pitch)]) - inwards * reach
+            if not thing.round:
+                wrist = PALM_FROM_WRIST * np.cos(pitch) * hand_m
+                place[0] = min(0.0, low[0] - WRIST_OUT_M + wrist)
+            if not pitch or place[2] < high[2]:
+                fingers = turn.apply([np.cos(pitch), 0.0, np.sin(pitch)])
+                out.append(_grip(place, fingers, inwards))
+    return out
+
+
+def _grip(place: np.ndarray, fingers: np.ndarray, inwards: Iterable[float]) -> RigidTransform:
     return RigidTransform.from_components(place, axes_turn(fingers, inwards))
-
-
-def _top_grip(thing: Thing, side: str, measures: Measures, yaw: float) -> RigidTransform:
-    """A hand laid on top of an object, fingers forward, turned outwards by yaw [rad]."""
-    sign = 1.0 if side == "right" else -1.0
-    fingers = Rotation.from_euler("z", sign * yaw).apply([1.0, 0.0, 0.0])
-    top = np.array([0.0, 0.0, thing.shape.bounds[1, 2] + AIR_M])
-    back = 0.1 * measures["hand_length"] * fingers
-    return RigidTransform.from_components(top - back, axes_turn(fingers, [0.0, 0.0, -1.0]))
-
-
-def _back_grip(thing: Thing, side: str, measures: Measures, roll: float) -> RigidTransform:
-    """A hand on the near side, fingers leaning outwards from upright by roll [rad]."""
-    sign = 1.0 if side == "right" else -1.0
-    fingers = np.array([0.0, -sign * np.sin(roll), np.cos(roll)])
-    height = _clear_height(thing, measures["hand_length"], roll)
-    place = np.array([thing.shape.bounds[0, 0] - AIR_M, 0.0, height])
-    return RigidTransform.from_components(place, axes_turn(fingers, [1.0, 0.0, 0.0]))
 
 
 def _clear_height(thing: Thing, hand_m: float, tilt: float) -> float:
