@@ -50,6 +50,11 @@ FITTED_M = 0.01
 """Surfaces of a fitted body count as touching up to this distance at least [m]: they are off by as
 much as its limb lengths and the places of its sensors are, some millimetres."""
 
+_LIMBS = (("upper_arm", "forearm", "hand"), ("thigh", "foot"))
+CHAINS = [tuple(f"{side}_{part}" for part in limb) for side in SIDES for limb in _LIMBS]
+CHAINS += [("head",), ("pelvis",)]
+"""What is reported as not recorded, of each chain the first part alone."""
+
 SOLES = ("right_sole", "left_sole")
 WARNINGS = {
     "far": "far from their places on the body; check their names, the unit and the measures",
@@ -144,14 +149,16 @@ def fit_warnings(place: str | Path, capture: Capture, made: Fit) -> list[str]:
     floor = ground(capture)
     lower = np.minimum(*(made.human.sites(made.motion, [s])[s][0][:, 2] for s in SOLES))
     floats_m = 0.0 if floor is None else float(np.median(lower)) - floor
-    feet_seen = not {"right_foot", "left_foot"} & set(made.unrecorded)
     stretching = [each.message for each in capture.notices if each.code == "bone-stretches"]
+    unseen = set(made.unrecorded)
+    missing = (next((part for part in chain if part in unseen), "") for chain in CHAINS)
+    floats = floats_m > FLOATING_M and not {"right_foot", "left_foot"} & unseen
     found_of = {
         "far": _far(made),
         "misplaced": _misplaced(made, found.names) if found else [],
-        "unrecorded": _unrecorded(made),
+        "unrecorded": [part for part in missing if part],
         "no floor": ["none in the capture"] if floor is None else [],
-        "floating": [f"{1e3 * floats_m:.0f} mm"] if feet_seen and floats_m > FLOATING_M else [],
+        "floating": [f"{1e3 * floats_m:.0f} mm"] if floats else [],
         "stretching": list(dict.fromkeys(stretching)),
     }
     return [
@@ -184,16 +191,6 @@ def _misplaced(made: Fit, names: Mapping[str, BodyName]) -> list[str]:
             if same and metres > FAR_M:
                 apart[segment] = max(apart.get(segment, (0.0, "")), (metres, name))
     return [f"{name} by {1e3 * metres:.0f} mm" for metres, name in sorted(apart.values())[::-1]]
-
-
-def _unrecorded(made: Fit) -> list[str]:
-    """Limbs, head and pelvis of which nothing is followed; a limb's parts are not listed too."""
-    unseen = set(made.unrecorded)
-    out = []
-    for side in SIDES:
-        for chain in (("upper_arm", "forearm", "hand"), ("thigh", "foot")):
-            out += [f"{side}_{part}" for part in chain if f"{side}_{part}" in unseen][:1]
-    return [*out, *(name for name in ("head", "pelvis") if name in unseen)]
 
 
 def ground(capture: Capture) -> float | None:

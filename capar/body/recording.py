@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Bool
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.gaze import lines_of_sight
@@ -15,7 +14,7 @@ from capar.body.sensors import PERFECT, Mount, Tracker, recorded, sense, strap_o
 from capar.body.shapes import moved, segment_surface
 from capar.body.skeleton import skeleton
 from capar.model import geometry
-from capar.model.capture import Agent, Capture, Role, Sensor, Shape, Stream, TagObject, TagType
+from capar.model.capture import Agent, Capture, Role, Sensor, Stream, TagObject, TagType
 
 HAND_SEGMENTS = ("hand", "fingers", "fingertips")
 """What a hand's surface consists of; the thumb is left out, as it moves against them."""
@@ -38,28 +37,42 @@ class Truth:
 
 def truth_of(made: Performance) -> Truth:
     """What is so, from the script's own places and not from what a tracker sees."""
+
+    def intervals(holds: np.ndarray) -> list[tuple[float, float]]:
+        runs = geometry.runs(np.asarray(holds))
+        return [(float(made.times[a]), float(made.times[b])) for a, b in runs]
+
     spans: list[tuple[str, str, np.ndarray]] = []
     for side in SIDES:
-        spans += [(f"{side}_hand", name, held) for name, held in _holds(made, side).items()]
+        held: dict[str, np.ndarray] = {}
+        for phase, (_, start, end) in zip(made.script, made.phases, strict=True):
+            hand = phase.hand(side)
+            for name in (hand.thing, *hand.beside) if hand.does == "holds" else ():
+                now = (made.times >= start - 1e-9) & (made.times < end - 1e-9)
+                held[name] = held.get(name, np.zeros(len(made.times), dtype=bool)) | now
+        spans += [(f"{side}_hand", name, when) for name, when in held.items()]
+    motions = []
+    mouth = made.human.sites(made.motion, ["mouth"])["mouth"][0]
     for name, thing in made.scene.things.items():
         path = made.things[name]
         if made.scene.table and thing.tag is TagType.MOBILE:
             stands = np.abs(path.translation[:, 2] - thing.place[2]) < TOUCH_M
             upright = (path.rotation * thing.pose.rotation.inv()).magnitude() < 0.01
             spans.append((name, made.scene.table.name, stands & upright))
-        spans.append((name, "head", _at_mouth(made, name)))
-    contacts = [(a, b, *span) for a, b, when in spans for span in _intervals(made, when)]
-    motions = [
-        (name, *span)
-        for name in made.scene.things
-        for span in _intervals(made, _moves(made.things[name]))
-    ]
-    looks = [
-        (look, start, end)
-        for look, (_, start, end) in zip(made.looks, made.phases, strict=True)
-        if look
-    ]
-    return Truth(tuple(sorted(contacts)), tuple(motions), made.phases, tuple(looks))
+        low, high = thing.shape.bounds  # the mouth touches the rim
+        local = path.rotation.inv().apply(mouth - path.translation)
+        apart = np.hypot(
+            np.linalg.norm(local[:, :2], axis=1) + low[0], np.abs(local[:, 2] - high[2])
+        )
+        spans.append((name, "head", apart < TOUCH_M))
+        step = np.linalg.norm(np.diff(path.translation, axis=0), axis=1)
+        turn = (path.rotation[1:] * path.rotation[:-1].inv()).magnitude()
+        moves = np.append((step > 1e-9) | (turn > 1e-9), False)
+        motions += [(name, *span) for span in intervals(moves)]
+    contacts = sorted((a, b, *span) for a, b, when in spans for span in intervals(when))
+    looks = zip(made.looks, made.phases, strict=True)
+    seen = tuple((look, start, end) for look, (_, start, end) in looks if look)
+    return Truth(tuple(contacts), tuple(motions), made.phases, seen)
 
 
 def record(
@@ -94,12 +107,8 @@ def record(
     for thing in made.scene.things.values():
         faults = PERFECT if thing.tag is TagType.FIXED else tracker
         stream, kind = recorded(made.times, made.things[thing.name], faults, rng), thing.kind
-        objects.append(
-            TagObject(
-                thing.name, thing.tag, stream, thing.shape, kind or thing.name,
-                mass_kg=thing.mass_kg,
-            )
-        )  # fmt: skip
+        one = TagObject(thing.name, thing.tag, stream, thing.shape, kind or thing.name)
+        objects.append(replace(one, mass_kg=thing.mass_kg))
     heads = [
         TagObject("head", TagType.SELF, each.stream, each.shape, "head")
         for each in worn
@@ -115,41 +124,6 @@ def record(
         objects=(*heads, *objects),
         agent=agent or Agent("performer", kind, {"age": made.human.measures.age, **measures}),
     )
-
-
-def _holds(made: Performance, side: str) -> dict[str, Bool[np.ndarray, "frames"]]:
-    """When a hand touches each thing: while it holds it, and nearby to within ``TOUCH_M``."""
-    out: dict[str, np.ndarray] = {}
-    for phase, (_, start, end) in zip(made.script, made.phases, strict=True):
-        hand = phase.hand(side)
-        if hand.does == "holds":
-            now = (made.times >= start - 1e-9) & (made.times < end - 1e-9)
-            for thing in (hand.thing, *hand.beside):
-                out.setdefault(thing, np.zeros(len(made.times), dtype=bool))[now] = True
-    return out
-
-
-def _at_mouth(made: Performance, name: str) -> Bool[np.ndarray, "frames"]:
-    thing = made.scene.thing(name)
-    turn = made.things[name].rotation
-    rim = -thing.shape.bounds[0, 0]
-    mouth = made.human.sites(made.motion, ["mouth"])["mouth"][0]
-    local = turn.inv().apply(mouth - made.things[name].translation)
-    height = np.abs(local[:, 2] - thing.shape.bounds[1, 2])
-    apart = np.hypot(np.linalg.norm(local[:, :2], axis=1) - rim, height)
-    return np.asarray(apart < TOUCH_M)
-
-
-def _moves(path: RigidTransform) -> Bool[np.ndarray, "frames"]:
-    step = np.linalg.norm(np.diff(path.translation, axis=0), axis=1)
-    turn = (path.rotation[1:] * path.rotation[:-1].inv()).magnitude()
-    return np.append((step > 1e-9) | (turn > 1e-9), False)
-
-
-def _intervals(made: Performance, holds: np.ndarray) -> list[tuple[float, float]]:
-    return [
-        (float(made.times[a]), float(made.times[b])) for a, b in geometry.runs(np.asarray(holds))
-    ]
 
 
 def _sensor(made: Performance, mount: Mount, stream: Stream) -> Sensor:
@@ -194,35 +168,27 @@ def write_bundle(capture: Capture, truth: Truth, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     tracked = {n: b for n, b in sorted(capture.bodies.items()) if not _fixed(b)}
     parts = ("x", "y", "z", "qx", "qy", "qz", "qw", "valid")
-    header = ["t_s", *(f"{name}_{part}" for name in tracked for part in parts)]
-    rows = [_row(capture, list(tracked.values()), frame) for frame in range(len(capture.times))]
-    _write(folder / "motion.csv", [",".join(header), *rows])
+    rows = [",".join(["t_s", *(f"{name}_{part}" for name in tracked for part in parts)])]
+    for frame, time in enumerate(capture.times):
+        cells = [f"{time:.9f}"]
+        for each in tracked.values():
+            cells += [f"{value:.7f}" for value in each.stream.positions[frame]]
+            cells += [f"{value:.8f}" for value in np.roll(each.stream.orientations[frame], -1)]
+            cells.append("0" if each.stream.lost[frame] else "1")
+        rows.append(",".join(cells))
+    files = {"motion.csv": rows, "capture.toml": _toml(capture), "truth.toml": _truth_toml(truth)}
     bodies: list[Sensor | TagObject] = [*capture.objects, *capture.sensors]
-    shapes = {body.name: body.shape for body in bodies}
-    for name, shape in sorted(shapes.items()):
-        if shape is not None:
-            _write(folder / f"{name}.obj", _obj(shape))
-    _write(folder / "capture.toml", _toml(capture))
-    _write(folder / "truth.toml", _truth_toml(truth))
+    for body in bodies:
+        if body.shape is not None:
+            corners = [f"v {x:.7f} {y:.7f} {z:.7f}" for x, y, z in body.shape.vertices]
+            faces = [f"f {a} {b} {c}" for a, b, c in body.shape.faces + 1]
+            files[f"{body.name}.obj"] = [f"# {body.shape.description} [m]", *corners, *faces]
+    for name, lines in files.items():
+        (folder / name).write_bytes(("\n".join(lines) + "\n").encode())
 
 
 def _fixed(body: Sensor | TagObject) -> bool:
     return isinstance(body, TagObject) and body.tag is TagType.FIXED
-
-
-def _row(capture: Capture, bodies: list[Sensor | TagObject], frame: int) -> str:
-    cells = [f"{capture.times[frame]:.9f}"]
-    for body in bodies:
-        cells += [f"{value:.7f}" for value in body.stream.positions[frame]]
-        cells += [f"{value:.8f}" for value in np.roll(body.stream.orientations[frame], -1)]
-        cells.append("0" if body.stream.lost[frame] else "1")
-    return ",".join(cells)
-
-
-def _obj(shape: Shape) -> list[str]:
-    corners = [f"v {x:.7f} {y:.7f} {z:.7f}" for x, y, z in shape.vertices]
-    faces = [f"f {a} {b} {c}" for a, b, c in shape.faces + 1]
-    return [f"# {shape.description} [m]", *corners, *faces]
 
 
 def _toml(capture: Capture) -> list[str]:
@@ -236,36 +202,26 @@ def _toml(capture: Capture) -> list[str]:
         out += [""] * (agent is not capture.agent) + ["[[agent]]" if capture.others else "[agent]"]
         out += [f'name = "{agent.name}"', f'kind = "{agent.kind}"', f"measures = {{ {measures} }}"]
     for sensor in capture.sensors:
-        out += [
-            "",
-            "[[sensor]]",
-            f'name = "{sensor.name}"',
-            f'end_effector = "{sensor.end_effector}"',
-        ]
+        out += ["", "[[sensor]]", f'name = "{sensor.name}"']
+        out += [f'end_effector = "{sensor.end_effector}"']
         out += [f'agent = "{sensor.agent}"'] * bool(sensor.agent)
         out += [f'side = "{sensor.side}"'] * (sensor.side != "none")
         out += [f'link = "{sensor.link}"', f'role = "{sensor.role}"', f'body = "{sensor.name}"']
         if sensor.role is Role.ATTENDS:
             out += [f"eye = {_list(sensor.eye)}", f"gaze = {_list(sensor.gaze)}"]
-        out += _mesh_line(sensor)
+        out += [f'shape = {{ mesh = "{sensor.name}.obj" }}'] * (sensor.shape is not None)
     for thing in capture.objects:
+        turn = np.roll(thing.stream.orientations[0], -1)
+        turned = bool(_fixed(thing) and abs(turn[3]) <= 1 - 1e-12)
         out += ["", "[[object]]", f'name = "{thing.name}"', f'tag = "{thing.tag}"']
         out += [f'agent = "{thing.agent}"'] * bool(thing.agent)
-        out += [f'kind = "{thing.kind}"'] * bool(thing.kind) + _where(thing) + _mesh_line(thing)
-        out += [f"mass_kg = {thing.mass_kg}"] if thing.mass_kg is not None else []
+        out += [f'kind = "{thing.kind}"'] * bool(thing.kind)
+        out += [f'body = "{thing.name}"'] * (not _fixed(thing))
+        out += [f"position = {_list(thing.stream.positions[0])}"] * _fixed(thing)
+        out += [f"orientation = {_list(turn)}"] * turned
+        out += [f'shape = {{ mesh = "{thing.name}.obj" }}'] * (thing.shape is not None)
+        out += [f"mass_kg = {thing.mass_kg}"] * (thing.mass_kg is not None)
     return out
-
-
-def _where(thing: TagObject) -> list[str]:
-    if not _fixed(thing):
-        return [f'body = "{thing.name}"']
-    turn = np.roll(thing.stream.orientations[0], -1)
-    lines = [f"position = {_list(thing.stream.positions[0])}"]
-    return lines if abs(turn[3]) > 1 - 1e-12 else [*lines, f"orientation = {_list(turn)}"]
-
-
-def _mesh_line(body: Sensor | TagObject) -> list[str]:
-    return [f'shape = {{ mesh = "{body.name}.obj" }}'] if body.shape is not None else []
 
 
 def _list(values: Iterable[float]) -> str:
@@ -280,10 +236,6 @@ def _truth_toml(truth: Truth) -> list[str]:
         for name, a, b in rows:
             out += ["", f"[[{kind}]]", f'name = "{name}"', f"span_s = {_list((a, b))}"]
     return out
-
-
-def _write(path: Path, lines: list[str]) -> None:
-    path.write_bytes(("\n".join(lines) + "\n").encode())
 
 
 def record_together(

@@ -45,7 +45,12 @@ def forms(measures: Measures, segments: Mapping[str, Segment]) -> list[Form]:
     """Every primitive of the mannequin."""
     middle = [_row_form(row, measures, segments) for row in table("shapes")["shape"]]
     middle += [*_head(measures, segments), *_hand(measures, segments), *_foot(measures, segments)]
-    return middle + [_mirror(each) for each in middle if is_right(each.body)]
+    flip = np.array([1.0, -1.0, 1.0])
+    return middle + [
+        replace(e, body=mirrored(e.body), centre=e.centre * flip, axis=e.axis * flip)
+        for e in middle
+        if is_right(e.body)
+    ]
 
 
 def _row_form(row: dict[str, Any], m: Measures, segments: Mapping[str, Segment]) -> Form:
@@ -83,12 +88,13 @@ def _head(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
 
 def _hand(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
     long = m["hand_length"]
-    thick = {"right_hand": PALM[1], "right_fingers": 0.052, "right_fingertips": 0.045}
-    wide = {"right_hand": PALM[0], "right_fingers": 0.205, "right_fingertips": 0.175}
-    for name, thickness in thick.items():
+    for name, kind, wide, thick in (
+        ("right_hand", "box", *PALM),
+        ("right_fingers", "box", 0.205, 0.052),
+        ("right_fingertips", "ellipsoid", 0.175, 0.045),
+    ):
         along = segments[name].tip - segments[name].origin
-        sizes = np.array([wide[name] * long, thickness * long, 0.5 * abs(along[2]) + 0.02 * long])
-        kind = "box" if name != "right_fingertips" else "ellipsoid"
+        sizes = np.array([wide * long, thick * long, 0.5 * abs(along[2]) + 0.02 * long])
         yield Form(name, kind, 0.5 * along, sizes, "skin")
     along = segments["right_thumb"].tip - segments["right_thumb"].origin
     half = np.array([0.055 * long, 0.5 * float(np.linalg.norm(along)), 0.0])
@@ -113,14 +119,8 @@ def _foot(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
     yield Form("right_foot", "ellipsoid", centre, instep, "shoe")
     toes = segments["right_toes"]
     half = np.array([1.05 * (toes.tip - toes.origin)[0], 0.42 * wide, 0.30 * high])
-    yield Form(
-        "right_toes", "ellipsoid", np.array([0.0, 0.0, half[2] - toes.origin[2]]), half, "shoe"
-    )
-
-
-def _mirror(form: Form) -> Form:
-    flip = np.array([1.0, -1.0, 1.0])
-    return replace(form, body=mirrored(form.body), centre=form.centre * flip, axis=form.axis * flip)
+    centre = np.array([0.0, 0.0, half[2] - toes.origin[2]])
+    yield Form("right_toes", "ellipsoid", centre, half, "shoe")
 
 
 def form_mesh(form: Form) -> trimesh.Trimesh:
