@@ -613,9 +613,9 @@ def measured(
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
     # Kept for contacts alone, and filtered poses of what handles nothing.
     forget_touchable([*bodies.sensors.values(), *bodies.objects.values()])
-    for sensor in capture.sensors:
-        if sensor.role is not Role.ACTS:
-            bodies.sensors[sensor.name].poses.forget()
+    for body in capture.sensors:
+        if body.role is not Role.ACTS:
+            bodies.sensors[body.name].poses.forget()
     facts = [*trial.scene(), *trial.contacts(touches), *moves]
     for name, track in tracks.items():
         facts += (ZeroCrossing(name, int(frame)) for frame in track.crossings)

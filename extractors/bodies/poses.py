@@ -110,7 +110,9 @@ def poses_of(
     """
     filled = fill_gaps(body.stream, gap_s=thresholds.gap_s)
     if known is None:
-        noise, still = noise_at_rest(filled, thresholds), _still(filled)
+        noise = noise_at_rest(filled, thresholds)
+        places, turns = filled.positions, filled.orientations
+        still = bool((places == places[0]).all() and (turns == turns[0]).all())
         fixed = _fixed_pose(body, filled)
     else:
         noise, still = Noise(known.noise_m, known.noise_rad), known.still
@@ -158,12 +160,6 @@ def _held(stream: Stream, pose: FixedPose) -> Stream:
         np.broadcast_to(two.positions[0], (frames, 3)),
         np.broadcast_to(two.orientations[0], (frames, 4)),
     )
-
-
-def _still(stream: Stream) -> bool:
-    """Whether the recorded pose is one and the same in every frame."""
-    first = stream.positions[0], stream.orientations[0]
-    return bool((stream.positions == first[0]).all() and (stream.orientations == first[1]).all())
 
 
 def rotation_matrices(orientations: Turns) -> Float[np.ndarray, "frames 3 3"]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from capar.model import geometry
 from capar.model.capture import UNITS, Capture, Conventions, Sensor, TagType
@@ -40,16 +40,14 @@ def faults(
 
     A fall shows axis and unit exactly; rests and sizes are asked only where no fall does.
 
-    Args:
-        capture: The trial.
-        bodies: Its bodies.
-        touches: Who touches whom, and when.
-        motions: When each object moves.
-        thresholds: What separates odd from impossible.
+    ``touches``: who touches whom, and when. ``motions``: when each object moves.
     """
     if not capture.acting:
         yield Notice("nothing-acts")
-    sized = is_sized(capture, thresholds)
+    # Whether sensors on trunk and limbs show that people have the size of people.
+    shown = [each for each in reaches(capture, thresholds) if each.least_m]
+    most = thresholds.person_most_m
+    sized = bool(shown) and all(each.least_m <= each.largest_m <= most for each in shown)
     falls = list(gravity_notices(capture, bodies, thresholds, sized=sized))
     yield from falls
     if not any(each.code == "up-contradicted" for each in falls):
@@ -89,13 +87,6 @@ def reaches(capture: Capture, thresholds: Thresholds) -> list[Reach]:
     return found
 
 
-def is_sized(capture: Capture, thresholds: Thresholds) -> bool:
-    """Whether sensors on trunk and limbs show that people have the size of people."""
-    found = [each for each in reaches(capture, thresholds) if each.least_m]
-    most = thresholds.person_most_m
-    return bool(found) and all(each.least_m <= each.largest_m <= most for each in found)
-
-
 def size_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
     """A notice if people are too small or too large, or each sensor alone is too fast."""
     found = reaches(capture, thresholds)
@@ -115,37 +106,30 @@ def size_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
             shown="person", size_m=float(f"{worst.largest_m:.3g}"),
             unit=likely_unit(worst.largest_m / how.unit_m, usual), declared=unit_name(how),
         )  # fmt: skip
-    if not found:
-        yield from _fast_notices(capture, thresholds)
+    for sensor in () if found else capture.sensors:
+        # A sensor alone that is faster than any hand for a good part of the time.
+        steps = np.linalg.norm(np.diff(sensor.stream.positions, axis=0), axis=1)
+        speeds = steps / np.diff(capture.times)
+        fast = (
+            np.nan if np.isnan(speeds).all() else np.nanquantile(speeds, thresholds.speed_quantile)
+        )
+        if fast > thresholds.hand_most_mps:
+            how = capture.conventions.get(sensor.name, Conventions())
+            unit = likely_unit(float(fast) / how.unit_m, thresholds.hand_usual_mps)
+            yield notice(
+                "unit-contradicted", sensor.name, shown="speed", unit=unit,
+                declared=unit_name(how), speed_mps=float(f"{fast:.3g}"),
+            )  # fmt: skip
 
 
 def likely_unit(length: float, usual_m: float) -> str:
     """The unit in which a length is nearest to a usual one; m, cm and mm before others.
 
-    Args:
-        length: In the unknown unit.
-        usual_m: What it usually is [m].
+    ``length``: in the unknown unit. ``usual_m``: what it usually is [m].
     """
     off = {name: abs(np.log(length * metres / usual_m)) for name, metres in UNITS.items()}
     common = min(("m", "cm", "mm"), key=off.__getitem__)
     return common if off[common] < np.log(NEAR) else min(off, key=off.__getitem__)
-
-
-def _fast_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
-    """A sensor alone that is faster than any hand for a good part of the time."""
-    for sensor in capture.sensors:
-        steps = np.linalg.norm(np.diff(sensor.stream.positions, axis=0), axis=1)
-        speeds = steps / np.diff(capture.times)
-        if np.isnan(speeds).all():
-            continue
-        usual = float(np.nanquantile(speeds, thresholds.speed_quantile))
-        if usual > thresholds.hand_most_mps:
-            how = capture.conventions.get(sensor.name, Conventions())
-            unit = likely_unit(usual / how.unit_m, thresholds.hand_usual_mps)
-            yield notice(
-                "unit-contradicted", sensor.name, shown="speed", unit=unit,
-                declared=unit_name(how), speed_mps=float(f"{usual:.3g}"),
-            )  # fmt: skip
 
 
 def shape_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
@@ -232,7 +216,15 @@ def _rests(
     thing = bodies.objects[name]
     if thing.shape is None:
         return
-    met = _met(capture, name, touches)
+    persons = {each.name for each in capture.sensors}
+    persons |= {each.name for each in capture.objects if each.tag is TagType.SELF}
+    # In which frames it touches each other thing; under no name, the body of a person.
+    spans: dict[str, list[Interval]] = {"": []}
+    for touch in touches:
+        if name in (touch.first, touch.second):
+            other = touch.second if touch.first == name else touch.first
+            spans.setdefault("" if other in persons else other, []).append(touch.interval)
+    met = {other: mask(found, len(capture.times)) for other, found in spans.items()}
     known = ~mask(motions, len(capture.times)) & ~thing.poses.lost
     for first, last in geometry.runs(known & ~met.pop("")):
         if capture.times[last] - capture.times[first] < thresholds.long_rest_s:
@@ -244,22 +236,6 @@ def _rests(
             if toward is not None and (through or (toward[2] > 0.0 and meeting[middle])):
                 height_m = float(thing.middles[middle, 2])
                 yield Rest(name, other, (first, last), toward, height_m)
-
-
-def _met(
-    capture: Capture, name: str, touches: Sequence[Contact]
-) -> dict[str, Bool[np.ndarray, "frames"]]:
-    """In which frames a thing touches each other one; under no name, the body of a person."""
-    persons = {each.name for each in capture.sensors}
-    persons |= {each.name for each in capture.objects if each.tag is TagType.SELF}
-    met = {"": np.zeros(len(capture.times), dtype=bool)}
-    for touch in touches:
-        if name in (touch.first, touch.second):
-            other = touch.second if touch.first == name else touch.first
-            key = "" if other in persons else other
-            first, last = touch.interval
-            met.setdefault(key, np.zeros(len(capture.times), dtype=bool))[first : last + 1] = True
-    return met
 
 
 def _toward(
@@ -284,10 +260,12 @@ def side_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
     for head in capture.sensors:
         if head.end_effector != "head":
             continue
+        own = [each for each in capture.sensors if capture.agent_of(each) == capture.agent_of(head)]
+        left_of = {each.end_effector: each for each in reversed(own) if each.side == "left"}
         votes = [
             (right, left, _sides(head, right, left, thresholds))
-            for right in capture.sensors
-            if (left := _other(capture, head, right))
+            for right in own
+            if right.side == "right" and (left := left_of.get(right.end_effector))
         ]
         exchanged = sum(int((sides < 0.0).sum()) for *_, sides in votes)
         shown = sum(len(sides) for *_, sides in votes)
@@ -296,21 +274,6 @@ def side_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
             right, left, _ = max(votes, key=lambda vote: len(vote[2]))
             share = round(exchanged / shown, 3)
             yield notice("sides-exchanged", right.name, left.name, head.name, share=share)
-
-
-def _other(capture: Capture, head: Sensor, right: Sensor) -> Sensor | None:
-    """The left sensor of a right one's kind, of the person whose head it is."""
-    agent = capture.agent_of(head)
-    if right.side != "right" or capture.agent_of(right) != agent:
-        return None
-    alike = (
-        each
-        for each in capture.sensors
-        if each.side == "left"
-        and each.end_effector == right.end_effector
-        and capture.agent_of(each) == agent
-    )
-    return next(alike, None)
 
 
 def _sides(

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from enum import Enum, auto
 from functools import lru_cache
 
 import numpy as np
@@ -48,10 +47,6 @@ def flights(
     of acceleration being more than a share of its bend. The acceleration stays the same through
     the flight, the body gains speed along it in the end, and no sensor goes along.
 
-    Args:
-        body: The body, known by the middle of its box.
-        others: The sensors.
-        thresholds: Shares and lengths that decide.
     """
     times = body.poses.filled.times
     if body.poses.still or body.poses.fixed is not None:
@@ -61,7 +56,9 @@ def flights(
     noise_m = max(body.poses.noise.position_m, thresholds.flight_noise_m)
     for first, last in geometry.runs(~np.isnan(places[:, 0])):
         known = slice(first, last + 1)
-        if last - first + 1 < WINDOWS[0] or _uneven(times[known]):
+        if last - first + 1 < WINDOWS[0]:
+            continue
+        if np.abs(np.diff(times[known]) / time_step(times[known]) - 1.0).max() > JITTER:
             continue
         for begin, end in _parabolic(places[known], noise_m, thresholds):
             span = first + begin, first + end
@@ -82,10 +79,6 @@ def goes_along(places: Places, carrier: Places, frames: slice, thresholds: Thres
     )
 
 
-def _uneven(times: Float[np.ndarray, "frames"]) -> bool:
-    return bool(np.abs(np.diff(times) / time_step(times) - 1.0).max() > JITTER)
-
-
 def _flight(
     name: str,
     places: Places,
@@ -99,7 +92,11 @@ def _flight(
     rim = round(thresholds.flight_rim_share * (last - first))
     frames = slice(first + rim, last - rim + 1)
     clock = times[frames] - times[frames.start]
-    if not _even(places[frames], clock, noise_m, thresholds):
+    # Acceleration is even throughout: there is no cubic and no quartic term.
+    basis, _ = np.linalg.qr(np.vander(clock / clock[-1], 5, increasing=True))
+    terms = np.linalg.norm(basis.T @ places[frames], axis=1)
+    allowed_m = thresholds.flight_even_share * terms[2] + thresholds.flight_even_sigmas * noise_m
+    if not max(terms[3], terms[4]) <= allowed_m:
         return None
     (bend, begin, _), *_ = np.linalg.lstsq(
         np.stack([0.5 * clock**2, clock, np.ones_like(clock)], axis=1), places[frames], rcond=None
@@ -114,17 +111,6 @@ def _flight(
     turned = before < -thresholds.flight_across_share * gained
     curved = across >= thresholds.flight_across_share * gained
     return Flight(name, first, last, bend, turned or curved)
-
-
-def _even(
-    places: Places, clock: Float[np.ndarray, "frames"], noise_m: float, thresholds: Thresholds
-) -> bool:
-    """Whether acceleration is even through a whole flight: no cubic and no quartic term."""
-    powers = np.stack([(clock / clock[-1]) ** power for power in range(5)], axis=1)
-    basis, _ = np.linalg.qr(powers)
-    terms = np.linalg.norm(basis.T @ places, axis=1)
-    allowed_m = thresholds.flight_even_share * terms[2] + thresholds.flight_even_sigmas * noise_m
-    return bool(terms[3] <= allowed_m and terms[4] <= allowed_m)
 
 
 def _parabolic(places: Places, noise_m: float, thresholds: Thresholds) -> Iterator[Interval]:
@@ -188,18 +174,9 @@ def _polynomials(width: int) -> Sequence[Float[np.ndarray, "width"]]:
 DOWN = np.array([0.0, 0.0, -1.0])
 
 
-class Verdict(Enum):
-    """How the acceleration of a flight compares with gravity."""
-
-    SOUND = auto()
-    ASIDE = auto()
-    """As large, along another direction."""
-
-    SCALED = auto()
-    """Down, of another size."""
-
-    BOTH = auto()
-    """Along another direction and of another size."""
+SOUND, ASIDE, SCALED, BOTH = "sound", "aside", "scaled", "both"
+"""How the acceleration of a flight compares with gravity: as large along another direction, down
+of another size, or both."""
 
 
 def gravity_notices(
@@ -211,43 +188,39 @@ def gravity_notices(
     what is slower or faster than a fall has to be curved. Where as many flights are sound as are
     not, nothing is said.
 
-    Args:
-        capture: The trial.
-        bodies: Its bodies.
-        thresholds: What separates gravity from other accelerations.
-        sized: Whether the size of people shows that the unit is right; then the rate is wrong.
+    ``sized``: whether the size of people shows that the unit is right; then the rate is wrong.
     """
     found = [
         flight
         for thing in bodies.objects.values()
         for flight in flights(thing, bodies.sensors.values(), thresholds)
     ]
-    groups: dict[Verdict, list[Flight]] = {each: [] for each in Verdict}
+    groups: dict[str, list[Flight]] = {each: [] for each in (SOUND, ASIDE, SCALED, BOTH)}
     for flight in found:
         groups[_verdict(flight, thresholds)].append(flight)
-    sound = len(groups.pop(Verdict.SOUND))
+    sound = len(groups.pop(SOUND))
     for verdict, group in groups.items():
         curved = [flight for flight in group if flight.curved]
-        sure = group if verdict is Verdict.ASIDE and len(group) > 1 else curved
+        sure = group if verdict == ASIDE and len(group) > 1 else curved
         if sure and len(group) > sound:
             longest = max(sure, key=lambda flight: flight.last - flight.first)
             how = capture.conventions.get(longest.body, Conventions())
             yield from _notices(capture, longest, verdict, how, thresholds, sized=sized)
 
 
-def _verdict(flight: Flight, thresholds: Thresholds) -> Verdict:
+def _verdict(flight: Flight, thresholds: Thresholds) -> str:
     size = float(np.linalg.norm(flight.acceleration))
     down = float(flight.acceleration @ DOWN) >= thresholds.gravity_cosine * size
     off = abs(size / GRAVITY_MPS2 - 1.0)
     if down:
-        return Verdict.SCALED if off > thresholds.gravity_off_share else Verdict.SOUND
-    return Verdict.ASIDE if off <= thresholds.gravity_share else Verdict.BOTH
+        return SCALED if off > thresholds.gravity_off_share else SOUND
+    return ASIDE if off <= thresholds.gravity_share else BOTH
 
 
 def _notices(
     capture: Capture,
     flight: Flight,
-    verdict: Verdict,
+    verdict: str,
     how: Conventions,
     thresholds: Thresholds,
     *,
@@ -261,18 +234,18 @@ def _notices(
         "start_s": float(capture.times[flight.first]),
         "end_s": float(capture.times[flight.last]),
     }
-    if verdict is Verdict.ASIDE or (verdict is Verdict.BOTH and up and unit):
+    if verdict == ASIDE or (verdict == BOTH and up and unit):
         angle = np.degrees(np.arccos(np.clip(flight.acceleration @ DOWN / size, -1.0, 1.0)))
         yield notice(
             "up-contradicted", flight.body, **span, shown="fall",
             angle_deg=round(float(angle), 1), up=up or "", declared=how.up,
         )  # fmt: skip
-    if unit and verdict is not Verdict.ASIDE and (verdict is Verdict.SCALED or up):
+    if unit and verdict != ASIDE and (verdict == SCALED or up):
         yield notice(
             "unit-contradicted", flight.body, **span, shown="fall",
             acceleration_mps2=float(f"{size:.3g}"), unit=unit, declared=unit_name(how),
         )  # fmt: skip
-    elif verdict is Verdict.SCALED:
+    elif verdict == SCALED:
         rate_hz = capture.rate_hz * float(np.sqrt(GRAVITY_MPS2 / size))
         yield notice(
             "fall-rate", flight.body, **span,

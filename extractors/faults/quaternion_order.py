@@ -12,7 +12,7 @@ from functools import cached_property
 from itertools import permutations
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from capar.model.capture import Stream
 from capar.model.notices import Notice, notice
@@ -35,22 +35,11 @@ class _Sampled:
     shift: int
 
     @cached_property
-    def declared(self) -> Float[np.ndarray, "stretches samples 3 3"]:
-        """Rotation matrices by the declared order."""
-        return _matrices(self.orientations)
-
-    @cached_property
-    def other(self) -> Float[np.ndarray, "stretches samples 3 3"]:
-        """Rotation matrices by the other order."""
-        return _matrices(np.roll(self.orientations, self.shift, axis=-1))
-
-
-@dataclass(frozen=True, slots=True)
-class _Votes:
-    """Stretches that support the declared order, and how far bodies stray in the others [m]."""
-
-    right: int
-    wrong: tuple[float, ...]
+    def matrices(self) -> tuple[Float[np.ndarray, "stretches samples 3 3"], ...]:
+        """Rotation matrices by the declared order, and by the other one."""
+        turns = self.orientations, np.roll(self.orientations, self.shift, axis=-1)
+        shape = *self.orientations.shape[:2], 3, 3
+        return tuple(rotation_matrices(each.reshape(-1, 4)).reshape(shape) for each in turns)
 
 
 def order_notices(
@@ -65,11 +54,8 @@ def order_notices(
     while the direction between them turns in the world. Each such stretch in which the orders
     disagree is evidence for one of them.
 
-    Args:
-        bodies: Poses as the file has them, by name.
-        orders: The declared order of each, ``xyzw`` or ``wxyz``.
-        unit_m: Metres per unit of the file.
-        thresholds: How steady, and how many stretches.
+    ``bodies``: poses of the file by name. ``orders``: the declared order of each, ``xyzw``
+    or ``wxyz``. ``unit_m``: metres per unit of the file.
     """
     for declared, (likely, shift) in SHIFT.items():
         sampled = {
@@ -79,10 +65,13 @@ def order_notices(
         }
         right = 0
         wrong: list[tuple[float, str, str]] = []
-        for first, second in _pairs(list(sampled), thresholds):
-            votes = _votes(sampled[first], sampled[second], unit_m, thresholds)
-            right += votes.right
-            wrong += [(stray_m, first, second) for stray_m in votes.wrong]
+        # Ordered pairs, spread evenly over all there are where those are too many.
+        every = list(permutations(sampled, 2))
+        step = max(1, -(-len(every) // thresholds.order_pairs))
+        for first, second in every[::step]:
+            votes, strays_m = _votes(sampled[first], sampled[second], unit_m, thresholds)
+            right += votes
+            wrong += [(stray_m, first, second) for stray_m in strays_m]
             if right + len(wrong) >= thresholds.order_enough:
                 break
         least = max(thresholds.order_stretches, right / thresholds.order_share)
@@ -97,13 +86,6 @@ def order_notices(
                 stray_m=round(stray_m, 3),
                 stretches=len(wrong),
             )
-
-
-def _pairs(names: list[str], thresholds: Thresholds) -> list[tuple[str, str]]:
-    """Ordered pairs of bodies, spread evenly over all there are where those are too many."""
-    every = list(permutations(names, 2))
-    step = max(1, -(-len(every) // thresholds.order_pairs))
-    return every[::step]
 
 
 def _sampled(stream: Stream, shift: int, thresholds: Thresholds) -> _Sampled:
@@ -121,29 +103,26 @@ def _sampled(stream: Stream, shift: int, thresholds: Thresholds) -> _Sampled:
     )
 
 
-def _votes(body: _Sampled, other: _Sampled, unit_m: float, thresholds: Thresholds) -> _Votes:
-    """What the stretches show in which the direction from a body to another turns."""
+def _votes(
+    body: _Sampled, other: _Sampled, unit_m: float, thresholds: Thresholds
+) -> tuple[int, tuple[float, ...]]:
+    """Stretches that support the declared order, and how far bodies stray in the others [m].
+
+    Only those count in which the direction between the two turns in the world, at a steady length.
+    """
     if not np.array_equal(body.times, other.times):
-        return _Votes(0, ())
+        return 0, ()
     between = other.positions - body.positions
-    turning = np.flatnonzero(_turning(between, thresholds))
-    declared = unit_m * _strays(body.declared[turning], between[turning])
-    turned = unit_m * _strays(body.other[turning], between[turning])
-    right = (declared <= thresholds.joined_m) & (turned >= thresholds.wander_m)
-    wrong = (turned <= thresholds.joined_m) & (declared >= thresholds.wander_m)
-    return _Votes(int(right.sum()), tuple(map(float, declared[wrong])))
-
-
-def _turning(
-    between: Float[np.ndarray, "stretches samples 3"], thresholds: Thresholds
-) -> Bool[np.ndarray, "stretches"]:
-    """Whether the direction between two bodies turns in the world, at a steady distance."""
     lengths = np.linalg.norm(between, axis=2)
     with np.errstate(invalid="ignore", divide="ignore"):
         joined = np.ptp(lengths, axis=1) <= thresholds.joined_share * lengths.max(axis=1)
         along = between / lengths[:, :, None]
         cosines = np.einsum("bsi,bi->bs", along, along[:, 0]).min(axis=1)
-        return np.asarray(joined & (cosines < np.cos(thresholds.turned_rad)))
+        some = np.flatnonzero(joined & (cosines < np.cos(thresholds.turned_rad)))
+    declared, turned = (unit_m * _strays(each[some], between[some]) for each in body.matrices)
+    right = (declared <= thresholds.joined_m) & (turned >= thresholds.wander_m)
+    wrong = (turned <= thresholds.joined_m) & (declared >= thresholds.wander_m)
+    return int(right.sum()), tuple(map(float, declared[wrong]))
 
 
 def _strays(
@@ -153,7 +132,3 @@ def _strays(
     inside = np.einsum("bsji,bsj->bsi", turns, between)
     apart = np.linalg.norm(inside - inside.mean(axis=1, keepdims=True), axis=2)
     return np.asarray(apart.max(axis=1, initial=0.0))
-
-
-def _matrices(orientations: Float[np.ndarray, "some samples 4"]) -> np.ndarray:
-    return rotation_matrices(orientations.reshape(-1, 4)).reshape(*orientations.shape[:2], 3, 3)

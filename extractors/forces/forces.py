@@ -247,13 +247,12 @@ class _Course:
                 # By heights, which damping does not change.
                 bounce = _least(partial(self._miss, HEIGHT, late), 0.0, 1.0)
             if damping is None and _slid_s(motion, self.times) >= SLIDES_S:
-                value = _least(
-                    lambda both, bounce=bounce: self._miss(LEVEL, (both, both), bounce),
-                    0.0,
-                    LATE_DAMPING,
-                )
+                value = _least(partial(self._miss_of_damping, bounce), 0.0, LATE_DAMPING)
                 late = value, value
         return late, bounce
+
+    def _miss_of_damping(self, bounce: float, damping: float) -> float:
+        return self._miss(LEVEL, (damping, damping), bounce)
 
     def _miss(self, axes: slice, damping: tuple[float, float], bounce: float) -> float:
         """Mean square distance along some axes [m^2]."""

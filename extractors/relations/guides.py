@@ -84,12 +84,13 @@ def fit_hinge(body: BodyGeometry) -> GuideFit | None:
     """
     known = _known(body)
     middles, turns = body.middles[known], body.orientations[known]
-    base = turns[:1]
+    base, axis = turns[:1], np.zeros(3)
     for _ in range(ROUNDS):
         moved = geometry.continuous(geometry.products(turns, base * [1.0, -1.0, -1.0, -1.0]))
-        axis = _main_direction(moved[:, 1:])
-        if axis is None:
+        found = _main_direction(moved[:, 1:])
+        if found is None:
             return None
+        axis = found
         angles = np.unwrap(2.0 * np.arctan2(moved[:, 1:] @ axis, moved[:, 0]))
         half = -0.5 * angles[:, None]
         back = geometry.products(np.hstack([np.cos(half), np.sin(half) * axis]), turns)

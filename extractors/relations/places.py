@@ -1,7 +1,7 @@
 """Where bodies are, how far they have gone and turned, and in which rooms."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import compress
 from typing import cast
@@ -47,14 +47,6 @@ class Sums:
 
     winds: Mapping[tuple[str, str], float] = field(default_factory=dict)
     """By how much a body has gone about another [rad]."""
-
-    def way(self, name: str) -> tuple[float, float, float]:
-        """Those of a body; none of one that was not there."""
-        return self.ways.get(name, (0.0, 0.0, 0.0))
-
-    def wind(self, name: str, other: str) -> float:
-        """That of two bodies."""
-        return self.winds.get((name, other), 0.0)
 
 
 FROM_THE_BEGINNING = Sums()
@@ -141,28 +133,14 @@ def distances(
     known = ~np.isnan(apart)
     values = _thousandths(np.stack([apart[known], gone_about[at[known]]], axis=1))
     swept = [milliradians for _, milliradians in values]
-    sweeps = not whole or _sweeps(swept)
+    wide = max(swept, default=0) - min(swept, default=0) >= 1000.0 * LEAST_SWEEP_RAD
+    sweeps = not whole or wide
     # The frames themselves, not copies: a long recording has hundreds of thousands of these facts.
     kept = compress(frames, known.tolist())
     for frame, (millimetres, milliradians) in zip(kept, values, strict=True):
         yield Distance(body.name, other.name, frame, millimetres)
         if sweeps:
             yield SweptAzimuth(body.name, other.name, frame, milliradians)
-
-
-def without_small_sweeps(facts: Iterable[SweptAzimuth]) -> list[SweptAzimuth]:
-    """Angles of a whole recording without those of bodies that go about each other nowhere."""
-    known = list(facts)
-    angles: dict[tuple[str, str], list[int]] = defaultdict(list)
-    for fact in known:
-        angles[fact.body, fact.other].append(fact.milliradians)
-    large = {pair for pair, swept in angles.items() if _sweeps(swept)}
-    return [fact for fact in known if (fact.body, fact.other) in large]
-
-
-def _sweeps(milliradians: Sequence[int]) -> bool:
-    """Whether angles of one body about another span a part of a turn that counts."""
-    return max(milliradians, default=0) - min(milliradians, default=0) >= 1000.0 * LEAST_SWEEP_RAD
 
 
 def turned_and_gone(
@@ -174,7 +152,7 @@ def turned_and_gone(
     parts = (steps, angles, spin_steps(body.orientations))
     way, turn, spin = (
         summed(np.nan_to_num(part), since.anchor, known)
-        for part, known in zip(parts, since.way(body.name), strict=True)
+        for part, known in zip(parts, since.ways.get(body.name, (0.0, 0.0, 0.0)), strict=True)
     )
     return way, turn, spin
 
@@ -189,7 +167,7 @@ def wound(body: BodyGeometry, other: BodyGeometry, since: Sums = FROM_THE_BEGINN
     azimuth = np.arctan2(offset[:, 1], offset[:, 0])
     steps = np.nan_to_num(np.diff(azimuth))
     turns = (steps + np.pi) % (2.0 * np.pi) - np.pi
-    known = since.wind(body.name, other.name)
+    known = since.winds.get((body.name, other.name), 0.0)
     return summed(np.where(outside[1:] & outside[:-1], turns, 0.0), since.anchor, known)
 
 
@@ -254,25 +232,20 @@ def rooms(
     facts = tuple(known)
     swung = {each.body for each in facts if isinstance(each, Swings)}
     met = {each.other for each in touches if each.body in swung}
-    for name in sorted((swung | met | _tipped(facts, thresholds)) & set(things)):
+    # What leans, or leans otherwise at one time than at another by half of that.
+    leans: dict[str, list[int]] = defaultdict(list)
+    for each in facts:
+        if isinstance(each, Posture):
+            leans[each.body].append(each.lean)
+    far = 500.0 * thresholds.lean_rad
+    tipped = {each.object for each in facts if isinstance(each, Leans)}
+    tipped |= {body for body, seen in leans.items() if max(seen) - min(seen) > far}
+    for name in sorted((swung | met | tipped) & set(things)):
         shape = things[name].shape
         if shape is None:
             yield Shapeless(name)
         elif kinds.get(name) not in VESSELS and not has_room(shape, thresholds):
             yield Solid(name)
-
-
-def _tipped(facts: Iterable[Fact], thresholds: Thresholds) -> set[str]:
-    """What leans, or leans otherwise at one time than at another by half of that."""
-    leans: dict[str, list[int]] = defaultdict(list)
-    out: set[str] = set()
-    for each in facts:
-        if isinstance(each, Leans):
-            out.add(each.object)
-        elif isinstance(each, Posture):
-            leans[each.body].append(each.lean)
-    far = 500.0 * thresholds.lean_rad
-    return out | {body for body, seen in leans.items() if max(seen) - min(seen) > far}
 
 
 def has_room(shape: Shape, thresholds: Thresholds) -> bool:

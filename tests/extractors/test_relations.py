@@ -54,7 +54,7 @@ from extractors.relations.arrangement import (
     sides,
 )
 from extractors.relations.guides import fit_hinge, fit_rail, guide_of, inside_share
-from extractors.relations.places import distances, enclosure, has_room, rooms, without_small_sweeps
+from extractors.relations.places import distances, enclosure, has_room, rooms
 from extractors.relations.support import rides, share_of_first
 from extractors.signals.intervals import Interval
 from extractors.thresholds import Thresholds
@@ -334,7 +334,6 @@ def test_an_angle_is_told_of_a_whole_recording_where_it_spans_a_quarter_of_a_tur
     angles = [fact for fact in part if isinstance(fact, SweptAzimuth)]
     assert len(angles) == len(frames)
     assert whole == [fact for fact in part if told or not isinstance(fact, SweptAzimuth)]
-    assert without_small_sweeps(angles) == (angles if told else [])
 
 
 @pytest.mark.parametrize(("height_m", "level"), [(0.5, True), (-0.5, True), (0.53125, False)])
