@@ -203,22 +203,23 @@ class Completion:
     @property
     def notes(self) -> tuple[str, ...]:
         """What is assumed, in words."""
-        out = []
-        if self.from_s > 0.0 or np.isfinite(self.to_s):
-            out.append(f"only {self.from_s:g} to {self.to_s:g} s of the recording")
-        if self.stature_m is not None:
-            out.append(f"a {self.kind or 'person'} of {self.stature_m:.2f} m was recorded")
-        if self.floor_m:
-            out.append(f"the floor is at {self.floor_m:.2f} m")
-        if self.place is not None:
-            x, y = self.place
-            out.append(f"the performer stands at ({x:.2f}, {y:.2f}) m, {self.heading_deg:.0f} deg")
-        out += [f"{hand!r} mirrors the other at {thing!r}" for hand, thing in self.mirrored.items()]
+        out = [f"{hand!r} mirrors the other at {thing!r}" for hand, thing in self.mirrored.items()]
         out += [f"{thing!r} is {x:.2f} x {y:.2f} m" for thing, (x, y) in self.sizes.items()]
         out += [
             f"the {side} hand's fingers point to {fingers} and its palm faces {palm}"
             for side, (fingers, palm) in self.axes.items()
         ]
+        if self.place is not None:
+            x, y = self.place
+            out.insert(
+                0, f"the performer stands at ({x:.2f}, {y:.2f}) m, {self.heading_deg:.0f} deg"
+            )
+        if self.floor_m:
+            out.insert(0, f"the floor is at {self.floor_m:.2f} m")
+        if self.stature_m is not None:
+            out.insert(0, f"a {self.kind or 'person'} of {self.stature_m:.2f} m was recorded")
+        if self.from_s > 0.0 or np.isfinite(self.to_s):
+            out.insert(0, f"only {self.from_s:g} to {self.to_s:g} s of the recording")
         return tuple(f"assumed: {text}" for text in out)
 
 
@@ -404,8 +405,7 @@ def write_joint_motion(made: JointMotion, capture: Capture, folder: Path) -> Non
 FLOOR_M = (6.0, 6.0, 0.02)
 """How long, wide and thick the floor is of which a capture of steps consists besides [m]."""
 
-AHEAD_M = 3.0
-"""How far ahead it is looked at [m]."""
+AHEAD_M = 3.0  # How far ahead it is looked at [m].
 
 
 def capture_of_steps(made: Stepping, *, name: str, agent: str) -> Capture:

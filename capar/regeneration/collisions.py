@@ -18,14 +18,9 @@ from capar.model.capture import Shape
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import vectors
 
-NEAR_M = 0.08
-"""Larger distances are not measured [m]."""
-
-HOLLOW = 0.98
-"""An object that fills a smaller share of its hull is hollow [1]."""
-
-DIFFERENCE_M = 1e-6
-"""Step of a difference quotient of a distance [m]."""
+NEAR_M = 0.08  # Larger distances are not measured [m].
+HOLLOW = 0.98  # An object that fills a smaller share of its hull is hollow [1].
+DIFFERENCE_M = 1e-6  # Step of a difference quotient of a distance [m].
 
 SAMPLES, SPACING_M = 4000, 0.008
 """Points on the surface of a hollow object, at least, and how far apart they are on a large one."""
@@ -232,12 +227,10 @@ def _surface_points(shape: Shape) -> KDTree | None:
     return KDTree(np.concatenate([np.array(shape.vertices), np.array(points)]))
 
 
-CLEAR_M = 0.001
-"""How far the surface of a limb is kept from that of an object [m]."""
+CLEAR_M = 0.001  # How far the surface of a limb is kept from that of an object [m].
 
 HEAD = ("head", "right_eye", "left_eye")
-HEAD_CLEAR_M = 0.015
-"""Likewise the head, whose contacts are observed from 5 mm on [m]."""
+HEAD_CLEAR_M = 0.015  # Likewise the head, whose contacts are observed from 5 mm on [m].
 
 CLEAR_COST = 100.0
 """Weight of a metre by which a limb is nearer [1/m]; two thirds of that of a palm's place."""

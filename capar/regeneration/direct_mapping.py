@@ -15,12 +15,11 @@ from capar.regeneration.goals import Goal
 from capar.regeneration.grips import Grip, Turn, recorded_grip
 from capar.regeneration.motion import Motion, perform_plan
 from capar.regeneration.planning import SETTLE_S, Plan
-from capar.regeneration.quality import Measure, Quality, quality
+from capar.regeneration.quality import Measure, Quality, performed_hands, quality
 from capar.regeneration.sources import Hold, Meeting, Source
 from capar.regeneration.styles import SHORT_M, arc_shares, own_style
 
-HEAD_SHARE = 0.1
-"""How firmly the head is kept on its way where nothing meets it [1]."""
+HEAD_SHARE = 0.1  # How firmly the head is kept on its way where nothing meets it [1].
 
 
 def map_directly(source: Source, human: Human) -> tuple[Motion, Quality]:
@@ -131,17 +130,11 @@ def _hand_path(
         first = before.last if before else 0
         final = after.first if after else last
         if final > first:
-            start = spots[first] if before else _rest(source, old, new, side, 0)
-            goal = spots[final] if after else _rest(source, old, new, side, last)
+            start = spots[first] if before else rest_pose(source, old, new, side, 0).translation
+            goal = spots[final] if after else rest_pose(source, old, new, side, last).translation
             part = slice(first, final + 1)
             spots[part] = axis_mapped(recorded.translation[part], start, goal)
     return RigidTransform.from_components(spots, Rotation.from_quat(turns))
-
-
-def _rest(
-    source: Source, old: BodyFrames, new: BodyFrames, side: str, frame: int
-) -> Float[np.ndarray, "3"]:
-    return np.asarray(rest_pose(source, old, new, side, frame).translation)
 
 
 def _goals(source: Source, things: Mapping[str, RigidTransform], name: str) -> list[Goal]:
@@ -159,30 +152,20 @@ def departures(motion: Motion) -> tuple[Measure, ...]:
     the recorded scene they say how exactly the recorded body does again what it did.
     """
     plan = motion.plan
-    capture, out = plan.source.capture, []
+    capture, hands, rows = plan.source.capture, performed_hands(motion), []
     for side, hand in plan.source.hands.items():
-        name = f"{side}_palm"
-        spots, turns = plan.human.sites(motion.postures, [name])[name]
-        palms = RigidTransform.from_components(spots, Rotation.from_quat(turns, scalar_first=True))
-        performed = palms * plan.frames.palms[side].inv()
         stream = capture.sensor(hand.sensor).stream
-        known = ~np.isnan(stream.positions[:, 0])
+        known = np.flatnonzero(~stream.lost)
         recorded = transforms(stream.positions[known], stream.orientations[known]) * hand.frame.pose
-        out.append(_largest(f"{side} hand", performed.translation, recorded.translation, known))
+        rows.append((f"{side} hand", hands[side].translation[known], recorded.translation, known))
     for name in plan.goals:
-        recorded_spots = capture.tag_object(name).stream.positions
-        known = ~np.isnan(recorded_spots[:, 0])
-        out.append(_largest(name, plan.things[name].translation, recorded_spots[known], known))
+        stream = capture.tag_object(name).stream
+        known = np.flatnonzero(~stream.lost)
+        rows.append((name, plan.things[name].translation[known], stream.positions[known], known))
+    out = []
+    for name, performed, spots, known in rows:
+        apart = np.linalg.norm(performed - spots, axis=1)
+        worst = int(apart.argmax())
+        far_mm, frame = 1e3 * float(apart[worst]), int(known[worst])
+        out.append(Measure("from the recorded way", far_mm, "mm", frame, name))
     return tuple(out)
-
-
-def _largest(
-    name: str,
-    performed: Float[np.ndarray, "frames 3"],
-    recorded: Float[np.ndarray, "known 3"],
-    known: np.ndarray,
-) -> Measure:
-    apart = np.linalg.norm(performed[known] - recorded, axis=1)
-    worst = int(apart.argmax())
-    frame = int(np.flatnonzero(known)[worst])
-    return Measure("from the recorded way", 1e3 * float(apart[worst]), "mm", frame, name)

@@ -81,10 +81,15 @@ def read_effort(text: str) -> Effort:
         UnknownNameError: There is no such parameter or pole.
         CaparError: A value is no number or beyond a pole, or a parameter is stated twice.
     """
+    signs = {parameter: (parameter, 1.0) for parameter in POLES}
+    for parameter, (low, high) in POLES.items():
+        signs |= {low: (parameter, -1.0), high: (parameter, 1.0)}
     out, stated = Effort(), set()
     for part in filter(None, (item.strip() for item in text.split(","))):
         name, _, said = (word.strip() for word in part.partition("="))
-        parameter, sign = _parameter(name.lower())
+        if name.lower() not in signs:
+            raise UnknownNameError("effort", name.lower(), list(signs))
+        parameter, sign = signs[name.lower()]
         try:
             value = sign * float(said)
         except ValueError:
@@ -98,16 +103,6 @@ def read_effort(text: str) -> Effort:
     if not stated:
         raise CaparError("--effort states nothing; as in --effort time=0.6,weight=-0.3")
     return out
-
-
-def _parameter(name: str) -> tuple[str, float]:
-    """The parameter of that name, and the sign of the pole if one was named."""
-    for parameter, (low, high) in POLES.items():
-        signs = {parameter: 1.0, low: -1.0, high: 1.0}
-        if name in signs:
-            return parameter, signs[name]
-    known = [word for parameter, poles in POLES.items() for word in (parameter, *poles)]
-    raise UnknownNameError("effort", name, known)
 
 
 @cache
@@ -138,11 +133,8 @@ def told_of_words(words: Iterable[str], *, stated: bool) -> list[str]:
 SLOW = 0.05
 """Speeds below this share of the highest one are scaled alike, so that noise is not raised [1]."""
 
-SKEW = 1.5
-"""Weight tilts the speeds by this power of e from the first frame to the last one [1]."""
-
-PAUSE = 0.12
-"""Bound flow pauses for so long at an end of a interval [1, of its time]."""
+SKEW = 1.5  # Weight tilts the speeds by this power of e from the first frame to the last one [1].
+PAUSE = 0.12  # Bound flow pauses for so long at an end of a interval [1, of its time].
 
 OVERSHOOT, SETTLES = 0.08, 0.3
 """Free flow goes so far beyond a free end [1, of the path], for so long [1, of the time]."""
@@ -150,8 +142,7 @@ OVERSHOOT, SETTLES = 0.08, 0.3
 BULGE, LIFT = 0.15, 0.08
 """Indirect space leads so far aside, light weight so high half-way [1, of the straight path]."""
 
-WIDER = 0.5
-"""Indirect space enlarges by so much what deviates from the straight path already [1]."""
+WIDER = 0.5  # Indirect space enlarges by so much what deviates from the straight path already [1].
 
 
 def timed(
@@ -238,8 +229,7 @@ def shaped(
     return np.asarray(spots + free[:, None] * out)
 
 
-ARM_M = 0.1
-"""A turn of one radian counts as so long a path [m]."""
+ARM_M = 0.1  # A turn of one radian counts as so long a path [m].
 
 SLOWLY = 0.1
 """A step's border parts the path of a hand slower than this share of its highest speed [1]."""
@@ -359,8 +349,7 @@ def _rounded(
     return RigidTransform.from_components(path.translation + share[:, None] * off, path.rotation)
 
 
-SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)
-"""Shares of the effort that are tried [1]."""
+SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)  # Shares of the effort that are tried [1].
 
 DOUBLINGS = 0.5
 """A sudden performance is so many times halved in its time, a sustained one doubled [1]."""

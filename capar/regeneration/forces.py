@@ -42,11 +42,8 @@ def force_kind(name: str) -> ForceKind:
 ARM = ("upper_arm", "forearm", "hand", "fingers", "fingertips", "thumb")
 """The link whose mass strikes, taken to be at the hand (thesis 3.4.3.3)."""
 
-SHARE = 0.98
-"""The largest share of a blow's momentum that a striker keeps for its own mass [1]."""
-
-LEVEL_MPS = 0.1
-"""A slower hand has no level direction [m/s]."""
+SHARE = 0.98  # The largest share of a blow's momentum that a striker keeps for its own mass [1].
+LEVEL_MPS = 0.1  # A slower hand has no level direction [m/s].
 
 SLOWEST, FASTEST = 0.2, 2.5
 """How many times as fast a hand may be led into a blow as its own path has it [1]."""
@@ -198,8 +195,7 @@ def _faster(
     return RigidTransform.from_components(spots, hand.rotation)
 
 
-FALLS = np.array([0.0, 0.0, -GRAVITY_MPS2])
-"""Acceleration in flight [m/s^2]."""
+FALLS = np.array([0.0, 0.0, -GRAVITY_MPS2])  # Acceleration in flight [m/s^2].
 
 SWING_S = 0.4
 """Over so long at most a hand's own path is changed to throw, and to catch, as the flight asks."""

@@ -23,11 +23,8 @@ HINGE, RAIL, PLANE = "hinge", "rail", "plane"
 FLAT_M = 0.003
 """What never leaves its height by more than this while it is held slides on its support [m]."""
 
-FLAT_RAD = float(np.radians(3.0))
-"""Nor leans by more than this [rad]."""
-
-NOISE_M = 0.0002
-"""A recorded path that is no farther off the plane is kept as it is [m]."""
+FLAT_RAD = float(np.radians(3.0))  # Nor leans by more than this [rad].
+NOISE_M = 0.0002  # A recorded path that is no farther off the plane is kept as it is [m].
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,14 +165,9 @@ def _ratio(source: Source, scene: Scene, name: str) -> Float[np.ndarray, "3"]:
 STILL_M, STILL_RAD = 0.005, float(np.radians(5.0))
 """A interval in which an object stays so near where it was is one of rest [m, rad]."""
 
-TOUCH_M = 0.0005
-"""What is left between surfaces that touch [m]."""
-
-STEP_M = 0.005
-"""Steps in which the nearest place is sought where it touches [m]."""
-
-SEARCH_M = 0.03
-"""How far an object is moved at most so that it touches [m]."""
+TOUCH_M = 0.0005  # What is left between surfaces that touch [m].
+STEP_M = 0.005  # Steps in which the nearest place is sought where it touches [m].
+SEARCH_M = 0.03  # How far an object is moved at most so that it touches [m].
 
 
 @dataclass(frozen=True, eq=False)

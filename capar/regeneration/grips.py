@@ -36,17 +36,13 @@ the turns across the palm that are tried with each [rad]."""
 PITCH_WEIGHT, TILT_WEIGHT = 2.0, 4.0
 """How much worse these turns are than one about a round object [1]."""
 
-OUT_M = 0.1
-"""How far a recorded hand is brought to the surface of what it holds at most [m]."""
+OUT_M = 0.1  # How far a recorded hand is brought to the surface of what it holds at most [m].
 
 LOOSE_M = 0.003
 """A hand that is then farther off its surface or deeper inside does not take it [m]."""
 
-CLEAR_M = 0.014
-"""How far a hand stays above what the object stands on, if it did so before [m]."""
-
-ROUND_SHARE = 0.02
-"""Largest deviation of a round object's radius [1]."""
+CLEAR_M = 0.014  # How far a hand stays above what the object stands on, if it did so before [m].
+ROUND_SHARE = 0.02  # Largest deviation of a round object's radius [1].
 
 
 @dataclass(frozen=True)

@@ -203,8 +203,7 @@ def offer(source: JointSource, cast: Cast, passed: HandOver, place: Place) -> Ri
     return RigidTransform.from_components([*flat, high], own)
 
 
-FAR_M = 0.1
-"""Larger distances between two bodies are not measured [m]."""
+FAR_M = 0.1  # Larger distances between two bodies are not measured [m].
 
 
 def joint_gates(source: JointSource, motions: Mapping[str, Motion]) -> tuple[Gate, ...]:
@@ -263,10 +262,6 @@ def _hand_over_gate(motions: Mapping[str, Motion], passed: HandOver) -> Gate:
     return within("hand-over", worst, 1.0)
 
 
-NEARER_M = (0.1, 0.3, 0.5, 0.8, 1.2)
-"""How much nearer everybody is placed where something is out of reach [m]."""
-
-
 @dataclass(frozen=True, eq=False)
 class JointMotion:
     """The motions of several bodies that handle the same objects."""
@@ -306,40 +301,24 @@ def regenerate_together(
     own hands' paths.
 
     Raises:
-        PlanError: It is out of reach or impossible; the message says what would help.
+        PlanError: It is out of reach or impossible.
     """
     cast = Cast(humans, scenes or {name: one.scene for name, one in source.sources.items()})
-    made = {name: best_motion(draft) for name, draft in _reachable(source, cast, kind).items()}
+    # The first place that all reach with the recorded grips, else the usual one with turned grips.
+    places = [(place, 1) for place in (PLACES if source.hand_overs else PLACES[:1])]
+    refused: list[PlanError] = []
+    for place, most in [*places, (PLACES[0], MOST_TURNS)]:
+        try:
+            drafts = _drafts(source, cast, kind, place, most)
+            break
+        except PlanError as error:
+            refused.append(error)
+    else:
+        raise refused[0]
+    made = {name: best_motion(draft) for name, draft in drafts.items()}
     motions = {name: motion for name, (motion, _) in made.items()}
     qualities = {name: quality for name, (_, quality) in made.items()}
     return JointMotion(source, motions, qualities, joint_gates(source, motions))
-
-
-def _reachable(source: JointSource, cast: Cast, kind: Kind) -> dict[str, Draft]:
-    """Where objects are handed over, and everybody's grips.
-
-    The first place that all reach with the recorded grips, else the usual one with turned grips.
-    """
-    why = ""
-    places = [(place, 1) for place in (PLACES if source.hand_overs else PLACES[:1])]
-    for place, most in [*places, (PLACES[0], MOST_TURNS)]:
-        try:
-            return _drafts(source, cast, kind, place, most)
-        except PlanError as error:
-            why = why or str(error)
-    middle = np.mean([scene.place for scene in cast.scenes.values()], axis=0)
-    for by_m in NEARER_M:
-        scenes = {}
-        for name, scene in cast.scenes.items():
-            way = middle - scene.place
-            x, y = scene.place + by_m * way / max(float(np.linalg.norm(way)), 1e-9)
-            scenes[name] = replace(scene, place=(float(x), float(y)))
-        try:
-            _drafts(source, Cast(cast.humans, scenes), kind, PLACES[0], 1)
-        except PlanError:
-            continue
-        raise PlanError(f"{why}; everybody standing {by_m:.2f} m nearer would do")
-    raise PlanError(f"{why}; no nearer place that was tried would do")
 
 
 def _drafts(

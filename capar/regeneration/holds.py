@@ -20,11 +20,8 @@ from extractors.forces.free_motion import GRAVITY_MPS2
 SETTLED_M, SETTLED_RAD = 0.0025, float(np.radians(2.0))
 """While a relative pose is so near its median, two bodies are rigidly together [m, rad]."""
 
-LOOSER = (1.0, 2.0)
-"""Multiples of both that are tried: noisy sensors keep less still [1]."""
-
-SETTLED_SHARE = 0.8
-"""Noise may take so small a share of the frames in between out of that [1]."""
+LOOSER = (1.0, 2.0)  # Multiples of both that are tried: noisy sensors keep less still [1].
+SETTLED_SHARE = 0.8  # Noise may take so small a share of the frames in between out of that [1].
 
 GRASP_M, GRASP_RAD = 0.025, float(np.radians(20.0))
 """How far a living hand may wander on what it carries: skin, fingers and wrist yield [m, rad]."""
@@ -39,11 +36,8 @@ STEP_S, TOUCHES_S = 0.15, 0.2
 """A hand that touches an object at rest for the first of these before that moves, or after, is seen
 to touch it; it is held for the second then, so that this is seen again [s]."""
 
-INSTANTS = 5
-"""At so many instants an object that moves at the head meets it [1]."""
-
-CARRIED_M = 0.02
-"""An object that is so far from both ends of a contact is being carried [m]."""
+INSTANTS = 5  # At so many instants an object that moves at the head meets it [1].
+CARRIED_M = 0.02  # An object that is so far from both ends of a contact is being carried [m].
 
 
 @dataclass(frozen=True)
@@ -215,8 +209,7 @@ def _apart(
     return off, np.asarray((relative.rotation * turn.inv()).magnitude())
 
 
-NEAR_S = 0.25
-"""A hold may end so long before an object is seen to move on alone [s]."""
+NEAR_S = 0.25  # A hold may end so long before an object is seen to move on alone [s].
 
 FLIES_M = 0.025
 """What is nowhere farther than this from the parabola of gravity between two holds flew [m]."""
@@ -379,8 +372,7 @@ def leanings_of(
     return tuple(sorted(out, key=lambda leaning: leaning.frames))
 
 
-MOVES_M = 0.02
-"""What goes no further than this is not carried along [m]."""
+MOVES_M = 0.02  # What goes no further than this is not carried along [m].
 
 RESTS_M = 0.006
 """Points of a carried object that are no higher than this above its lowest are those it stands on
@@ -390,8 +382,7 @@ FRICTION = 0.3
 """Coefficient of friction between what bears and what is carried: ceramics on wood or plastic have
 0.3 to 0.5 [1]."""
 
-HALF_S = 0.1
-"""Over so long before and after a frame its acceleration is measured [s]."""
+HALF_S = 0.1  # Over so long before and after a frame its acceleration is measured [s].
 
 
 @dataclass(frozen=True)

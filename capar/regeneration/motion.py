@@ -7,13 +7,12 @@ from jaxtyping import Float
 
 from capar.regeneration.collisions import ClearTask, Surroundings
 from capar.regeneration.planning import Draft, Plan
-from capar.regeneration.solving import Solver, vectors
+from capar.regeneration.solving import Solver, Targets, vectors
 
 FADE_S = 0.6
 """How long before the first key frame and after the last one a motion is drawn to them [s]."""
 
-SETTLING = 60
-"""Iterations for the first frame."""
+SETTLING = 60  # Iterations for the first frame.
 
 Guide = tuple[np.ndarray, np.ndarray]
 """A posture for every frame, and how strongly a motion is drawn to it [1]."""
@@ -23,7 +22,11 @@ def guide_of(draft: Draft) -> Guide:
     """The key postures of a draft whose grips are chosen, and straight paths between them."""
     solver, times = draft.solver(), draft.source.times
     shown = draft.key_frames(draft.source.holds)
-    rows = [solver.rest, *(draft.key_posture(solver, frame) for frame in shown), solver.rest]
+    rows = [solver.rest]
+    for frame in shown:
+        draft.follow(solver, list(draft.grips), frame)
+        rows.append(solver.posture)
+    rows.append(solver.rest)
     at_s = [times[shown[0]] - FADE_S, *times[shown], times[shown[-1]] + FADE_S]
     postures = [np.interp(times, at_s, column) for column in np.array(rows).T]
     weights = np.interp(times, at_s, [0.0, *np.ones(len(shown)), 0.0])
@@ -43,10 +46,16 @@ def perform_plan(plan: Plan, guide: Guide | None = None) -> Motion:
     scene = plan.scene
     clear = ClearTask(Surroundings(plan.human, scene), plan.source.met)
     solver = Solver(plan.human, (*scene.place, scene.floor_m), scene.heading, (clear,))
-    targets = plan.targets()
+    palms = {side: vectors(path * plan.frames.palms[side]) for side, path in plan.hands.items()}
+    head = vectors(plan.head)
     things = {name: vectors(path) for name, path in plan.things.items()}
-    postures = np.empty((len(targets), len(solver.posture)))
-    for frame, target in enumerate(targets):
+    postures = np.empty((len(head), len(solver.posture)))
+    for frame in range(len(head)):
+        target = Targets(
+            {side: rows[frame] for side, rows in palms.items()},
+            {side: float(firm[frame]) for side, firm in plan.grasps.items()},
+            head[frame], float(plan.firmness[frame]), plan.looks[frame],
+        )  # fmt: skip
         if guide is not None:
             solver.draw_to(guide[0][frame], float(guide[1][frame]))
         if frame == 0:

@@ -5,7 +5,6 @@ import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -39,26 +38,13 @@ from capar.regeneration.styles import STRAIGHT, Detour, Kind, Style, mapped
 LIFTS_M = (0.0, 0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3)
 """How far a path is lifted half-way, in order [m]."""
 
-BESIDE_M = 0.01
-"""How far a held object keeps from what stands beside its path [m]."""
-
-SLACK_M = 0.0005
-"""How much nearer than at both ends it may come [m]."""
-
-CUT_M = 0.001
-"""How much deeper than at both ends it may be inside something [m]."""
-
-SUNK_M = 0.005
-"""A recorded object that sinks no deeper into what is fixed does so by error [m]."""
-
-SPREAD = 9
-"""Over so many frames it is raised out of it [1]."""
-
-STEEPEST_M = 0.001
-"""Nor faster than this from either end of its path [m a frame]."""
-
-STRIDE = 2
-"""Frames between two at which a path is checked."""
+BESIDE_M = 0.01  # How far a held object keeps from what stands beside its path [m].
+SLACK_M = 0.0005  # How much nearer than at both ends it may come [m].
+CUT_M = 0.001  # How much deeper than at both ends it may be inside something [m].
+SUNK_M = 0.005  # A recorded object that sinks no deeper into what is fixed does so by error [m].
+SPREAD = 9  # Over so many frames it is raised out of it [1].
+STEEPEST_M = 0.001  # Nor faster than this from either end of its path [m a frame].
+STRIDE = 2  # Frames between two at which a path is checked.
 
 Places = Mapping[str, Float[np.ndarray, "7"]]
 """Where objects are, by name, as ``vectors`` has it."""
@@ -240,8 +226,7 @@ def borne_steadily(
 
 HAND_LIFTS_M = (0.0, 0.04, 0.08, 0.12, 0.18, 0.25, 0.35)
 BACKS_M = (0.0, 0.05, 0.1, 0.15, 0.2, 0.3)
-OFFS_M = (0.0, 0.003, 0.02, 0.05)
-"""Detours that are tried [m]."""
+OFFS_M = (0.0, 0.003, 0.02, 0.05)  # Detours that are tried [m].
 
 WORTH_M = 0.0005
 """By how much nearer to clear a larger detour must come where none is clear [m].
@@ -253,11 +238,8 @@ the hand up to 0.7 m off its path, and the performer's style with it.
 CHECK_S = 0.02
 """Most time between two frames at which a path is checked, unless frames are farther apart [s]."""
 
-LEAVING_S = 0.3
-"""So long after it let something go a hand may be near it [s]."""
-
-HAND_CUT_M = 0.0003
-"""How far a hand may cut what it is about to hold or has just left [m]."""
+LEAVING_S = 0.3  # So long after it let something go a hand may be near it [s].
+HAND_CUT_M = 0.0003  # How far a hand may cut what it is about to hold or has just left [m].
 
 
 AT_ONCE_S, SOON_M = 0.15, 0.005
@@ -332,11 +314,12 @@ def hand_paths(
                 soon = min(after.first + round(AT_ONCE_S * source.rate_hz), after.last)
                 if np.linalg.norm(spots[soon] - spots[after.first]) > SOON_M:
                     apart = after.thing
-            free = _Free(
-                side, first, frozenset(t for each in (before, after) if each for t in spans[each]),
-                (before is not None, after is not None), apart,
+            short = functools.partial(
+                clearance.short, lead, side=side, first=first, apart=apart,
+                touched={thing for each in (before, after) if each for thing in spans[each]},
+                held=(before is not None, after is not None),
             )  # fmt: skip
-            best = smallest_detour(functools.partial(clearance.short, free, lead))
+            best = smallest_detour(short)
             poses[first : last + 1] = list(lead(detour=best))
             if best != STRAIGHT:
                 detours[side, first] = best
@@ -391,10 +374,15 @@ class _Clearance:
 
     def short(
         self,
-        free: "_Free",
         lead: Callable[..., RigidTransform],
         detour: Detour,
         enough: float,
+        *,
+        side: str,
+        first: int,
+        touched: set[str],
+        held: tuple[bool, bool],
+        apart: str,
     ) -> float:
         """By how much the path is too near, at worst; not further than is decided [m].
 
@@ -405,13 +393,13 @@ class _Clearance:
         margin_m, last = self.care.margin_m, len(path) - 1
         # Where objects are if the scene is moved so that the hand stays at ease.
         shift, part = (
-            self.new.rest[free.side] * path.inv(),
-            slice(free.first, free.first + last + 1),
+            self.new.rest[side] * path.inv(),
+            slice(first, first + last + 1),
         )
         around = {name: vectors(shift * track[part]) for name, track in self.things.items()}
-        ends = [self._gaps(free.side, around, frame) for frame in (0, last)]
+        ends = [self._gaps(side, around, frame) for frame in (0, last)]
         beside = [{name: gap.get(name, margin_m) - 0.001 for name in self.things} for gap in ends]
-        resting = [gaps for gaps, holds in zip(beside, free.held, strict=True) if not holds]
+        resting = [gaps for gaps, holds in zip(beside, held, strict=True) if not holds]
         wanted = {
             near: {name: min([margin_m, *(gaps[name] for gaps in some)]) for name in self.things}
             for near, some in ((True, beside), (False, resting))
@@ -419,11 +407,11 @@ class _Clearance:
         worst = 0.0
         for frame in range(0, last + 1, self.stride):
             near = min(frame, last - frame) <= self.leaving
-            for name, gap in self._gaps(free.side, around, frame).items():
+            for name, gap in self._gaps(side, around, frame).items():
                 least = wanted[near][name]
-                if name in free.touched:
+                if name in touched:
                     least = -HAND_CUT_M if near else self.care.off_m
-                if name == free.apart and last - frame > self.coming and frame > self.leaving:
+                if name == apart and last - frame > self.coming and frame > self.leaving:
                     least = max(least, COMING_M)
                 worst = max(worst, least - gap)
             if worst >= enough:
@@ -439,18 +427,3 @@ class _Clearance:
         for pair in self.around.near([f"{side}_{each}" for each in HAND_SEGMENTS]):
             out[pair.thing] = min(out.get(pair.thing, np.inf), pair.distance_m)
         return out
-
-
-class _Free(NamedTuple):
-    """An interval in which a hand is free."""
-
-    side: str
-    first: int
-    touched: frozenset[str]
-    """What it held before and holds after."""
-
-    held: tuple[bool, bool]
-    """Whether it holds something before and after."""
-
-    apart: str
-    """What it takes after and moves at once; empty if nothing."""

@@ -23,8 +23,7 @@ from capar.regeneration.solving import Solver, Targets, vectors
 from capar.regeneration.sources import Hold, Meeting, Source
 from capar.regeneration.styles import Detour, Style, smoothed
 
-FAR_M = 3.0
-"""Distance of the point looked at where nothing is [m]."""
+FAR_M = 3.0  # Distance of the point looked at where nothing is [m].
 
 SHIFT_S, SETTLE_S, EVENT_S = 0.3, 0.45, 0.3
 """How long a shift of gaze takes, how long the head takes to be firmly where it is to be, and how
@@ -36,8 +35,7 @@ REST_S, REST_M, REST_SHARE = 0.5, 0.02, 0.5
 REACH_M, REACH_RAD = 0.0009, float(np.radians(0.9))
 """A hand that misses a goal by more cannot reach it: a little less than the gates allow."""
 
-CUT_M = 0.001
-"""How deep a part of the body may be inside an object [m]."""
+CUT_M = 0.001  # How deep a part of the body may be inside an object [m].
 
 KEYS, KEY_ITERATIONS = 6, 40
 """Key postures in a hold, besides those at goals, and iterations for each [1]."""
@@ -48,8 +46,7 @@ GAINED_M = 0.09
 FREELY = 0.003
 """Share of its weight that a palm's turning has where it is sought how the body would turn it."""
 
-ADJUSTED_M = 0.005
-"""An adjustment of a grip that is reported [m]."""
+ADJUSTED_M = 0.005  # An adjustment of a grip that is reported [m].
 
 
 def around(
@@ -175,7 +172,7 @@ class Draft:
         solver, worst = self.solver(), Miss()
         sides, thing = " and ".join(sorted({hold.side for hold in group})), group[0].thing
         for frame in self.key_frames(group):
-            metres, radians = solver.missed(self._follow(solver, grips, frame))
+            metres, radians = solver.missed(self.follow(solver, grips, frame))
             ratio = max(metres / REACH_M, radians / REACH_RAD)
             at = f"{thing!r} at {self.source.times[frame]:.2f} s"
             if ratio > worst.ratio:
@@ -190,12 +187,7 @@ class Draft:
                 break
         return worst
 
-    def key_posture(self, solver: Solver, frame: int) -> Float[np.ndarray, "posture"]:
-        """The posture at a frame with the chosen grips."""
-        self._follow(solver, list(self.grips), frame)
-        return solver.posture
-
-    def _follow(self, solver: Solver, grips: list[Grip], frame: int) -> Targets:
+    def follow(self, solver: Solver, grips: list[Grip], frame: int) -> Targets:
         """Reach for the goals of a key frame; a second time where limbs are inside something.
 
         From wherever the body was before, the way there may lead through objects.
@@ -242,16 +234,11 @@ class Draft:
 def _why_loose(grip: Grip) -> str:
     hand, thing = f"the {grip.hold.side} hand", repr(grip.hold.thing)
     where = "off" if grip.gap_m > 0.0 else "inside"
-    if grip.beyond_m > 0.0:
-        return (
-            f"{hand} is too small to hold {thing} together with {grip.beside!r}: the middle of one "
-            f"of them is {1e3 * grip.beyond_m:.0f} mm past its edge"
-        )
     if grip.beside:
-        return (
-            f"{hand} cannot hold {thing} together with {grip.beside!r}: where it touches that, it "
-            f"is {1e3 * abs(grip.gap_m):.0f} mm {where} {thing}"
-        )
+        why = f"is {1e3 * abs(grip.gap_m):.0f} mm {where} {thing} where it touches {grip.beside!r}"
+        if grip.beyond_m > 0.0:
+            why = f"ends {1e3 * grip.beyond_m:.0f} mm before the middle of one of them"
+        return f"{hand} is too small to hold {thing} together with {grip.beside!r}: it {why}"
     return (
         f"{hand} would be {where} {thing} and not on its surface, though moved by up to "
         f"{1e3 * OUT_M:.0f} mm along its palm: record it nearer, or state where its palm faces, "
@@ -284,21 +271,6 @@ class Plan:
     firmness: Float[np.ndarray, "frames"]
     looks: Float[np.ndarray, "frames 3"]
     notes: tuple[str, ...]
-
-    def targets(self) -> list[Targets]:
-        """Where everything is to be at each frame."""
-        palms = {s: vectors(path * self.frames.palms[s]) for s, path in self.hands.items()}
-        head = vectors(self.head)
-        return [
-            Targets(
-                {side: rows[frame] for side, rows in palms.items()},
-                {side: float(firm[frame]) for side, firm in self.grasps.items()},
-                head[frame],
-                float(self.firmness[frame]),
-                self.looks[frame],
-            )
-            for frame in range(len(head))
-        ]
 
 
 def led(draft: Draft, care: Care) -> Plan:

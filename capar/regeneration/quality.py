@@ -25,8 +25,7 @@ from capar.regeneration.styles import Kind, way
 LEAVING_S = 0.3
 """So long before and after a hold a hand may be near what it holds and what stands beside [s]."""
 
-MOVING_M = 0.05
-"""A shorter path has no profile of speed [m]."""
+MOVING_M = 0.05  # A shorter path has no profile of speed [m].
 
 
 @dataclass(frozen=True)
@@ -378,11 +377,8 @@ def _profile_gate(plan: Plan, hands: Mapping[str, RigidTransform]) -> Gate:
 TOUCHES_M = 0.005
 """Bodies that are no further apart touch, half of what a free hand keeps clear [m]."""
 
-SIDES = ("right", "left")
-"""Hands are called by their side."""
-
-HEAD = "head"
-"""The performer's own part that objects meet."""
+SIDES = ("right", "left")  # Hands are called by their side.
+HEAD = "head"  # The performer's own part that objects meet.
 
 Contact = tuple[str, str]
 """A hand, by its side, or an object; and what it touches."""

@@ -18,8 +18,7 @@ FEET = ("_foot", "_toes")
 LOWER_ARMS = ("_hand", "_fingers", "_fingertips", "_thumb", "_forearm")
 """How the names of these parts of the body end."""
 
-ON_M = 0.02
-"""An object whose lowest point is this near above another one's top stands on it [m]."""
+ON_M = 0.02  # An object whose lowest point is this near above another one's top stands on it [m].
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,8 +175,7 @@ HEIGHTS_M, SIZES, ASIDE_M = (0.6, 1.1), (0.7, 1.4), 0.1
 from their places along each axis [m]."""
 
 ATTEMPTS = 200
-APART_M = 0.02
-"""How far drawn objects are apart at least [m]."""
+APART_M = 0.02  # How far drawn objects are apart at least [m].
 
 KEYS = {"position", "turn_deg", "size", "raise_m"}
 STANCE_KEYS = {"place", "heading_deg", "floor_m"}

@@ -75,8 +75,7 @@ NEARER_M, HIGHER_M, DRAWN_M = (
 SMALLER, MOST_CHANGES = 0.7, 24
 """Likewise the size of what can be moved, and how many remedies in all [1]."""
 
-TALLER_M = 0.02
-"""A recorded body that is so much taller is tried, too [m]."""
+TALLER_M = 0.02  # A recorded body that is so much taller is tried, too [m].
 
 
 def regenerate(

@@ -17,42 +17,29 @@ from capar.body.scripts import SIDES
 PALM_COST = (150.0, 10.0)
 """Weights of a metre and of a radian at the palms: so that balance does not cost a millimetre."""
 
-HEAD_COST = (150.0, 20.0)
-"""Likewise of the head while an object is at it."""
+HEAD_COST = (150.0, 20.0)  # Likewise of the head while an object is at it.
 
 FREE_PALM = (0.27, 0.1)
 """Shares of a palm's weights while its hand is free: how it is turned then is only a wish [1]."""
 
-FASTEST = 13.0
-"""What no hinge exceeds [rad/s]."""
-
-ROOT_MPS, ROOT_RADPS = 0.7, 2.0
-"""Likewise the pelvis, along each axis [m/s] and about it [rad/s]."""
-
-FREE_HEAD = 0.002
-"""Share of that weight otherwise [1]."""
+FASTEST = 13.0  # What no hinge exceeds [rad/s].
+ROOT_MPS, ROOT_RADPS = 0.7, 2.0  # Likewise the pelvis, along each axis [m/s] and about it [rad/s].
+FREE_HEAD = 0.002  # Share of that weight otherwise [1].
 
 FOOT_COST = 240.0
-BALANCE_COST = 20.0
-"""Weight of a metre of the centre of mass from above the feet."""
+BALANCE_COST = 20.0  # Weight of a metre of the centre of mass from above the feet.
 
 DAMPING_COST = 0.1
 EASE_COST, GUIDE_COST = 0.15, 1.0
 """Weights of a radian from standing at ease, and at least so from a posture that guides."""
 
-LARGEST_STEP = 0.15
-"""Largest step of a hinge in one iteration [rad]."""
+LARGEST_STEP = 0.15  # Largest step of a hinge in one iteration [rad].
 
 LEAST_STEP = 1e-5
 
-FEWEST, MOST = 2, 10
-"""Iterations a frame."""
-
-STALLED, STALL = 8, 2e-4
-"""After so many iterations, less progress than this ends them [m, rad]."""
-
-NEAR_M, NEAR_RAD = 4e-4, 4e-3
-"""An error of the palms at which iteration ends."""
+FEWEST, MOST = 2, 10  # Iterations a frame.
+STALLED, STALL = 8, 2e-4  # After so many iterations, less progress than this ends them [m, rad].
+NEAR_M, NEAR_RAD = 4e-4, 4e-3  # An error of the palms at which iteration ends.
 
 
 @dataclass(frozen=True, eq=False)

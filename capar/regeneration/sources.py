@@ -39,8 +39,7 @@ from capar.regeneration.holds import Leaning as Leaning
 from capar.regeneration.holds import Meeting as Meeting
 from capar.regeneration.scenes import PlanError, Scene
 
-SAMPLES = 5000
-"""Points on each surface."""
+SAMPLES = 5000  # Points on each surface.
 
 PATCH_M = 0.0015
 """Points that are further apart than the nearest by no more than this are in the patch [m]."""
@@ -69,8 +68,7 @@ def surface_samples(
     return np.array(points), outwards * np.array(mesh.face_normals[faces])
 
 
-LEAST_SINE = 0.5
-"""Of the angle between a palm's direction and its fingers' [1]."""
+LEAST_SINE = 0.5  # Of the angle between a palm's direction and its fingers' [1].
 
 HandAxes = tuple[np.ndarray, np.ndarray]
 """To where a hand's straight fingers point and its palm faces, in the frame of its sensor."""
@@ -131,14 +129,9 @@ def body_hand_frame(human: Human, side: str) -> HandFrame:
     return hand_frame(hand_surface(human, side), axes)
 
 
-START_FRAMES = 10
-"""Frames from which it is taken where everything is at the beginning [1]."""
-
-WALKS_M = 0.8
-"""A head that goes further aside is carried there by steps [m]."""
-
-STANDS_M = 0.5
-"""While a head stays within this, its bearer is taken to stand [m]."""
+START_FRAMES = 10  # Frames from which it is taken where everything is at the beginning [1].
+WALKS_M = 0.8  # A head that goes further aside is carried there by steps [m].
+STANDS_M = 0.5  # While a head stays within this, its bearer is taken to stand [m].
 
 LAUNCH_FRAMES = 3
 """An object may be seen to move so long before the frame of the blow: filters blur it [1]."""

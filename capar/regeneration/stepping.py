@@ -38,8 +38,7 @@ from capar.regeneration.styles import Style
 STRIDE = 0.16
 """How far a foot goes in a step at most [share of stature] (estimate: half a usual step)."""
 
-RISE_M = 0.05
-"""How high a foot is lifted [m]."""
+RISE_M = 0.05  # How high a foot is lifted [m].
 
 SHIFT_S, SWING_S, STAND_S = 0.7, 0.7, 0.5
 """How long the weight is shifted to a foot, the other one is moved, and both stand before and
@@ -52,11 +51,8 @@ of the pelvis."""
 EASE_COSTS = (0.1, 5.0)
 """Weights of a radian from standing at ease: of the legs, and of all else [1/rad]."""
 
-LEGS = ("hip", "knee", "ankle", "toe")
-"""What the names of the legs' joints hold."""
-
-ITERATIONS = 12
-"""Steps of inverse kinematics a frame at most [1]."""
+LEGS = ("hip", "knee", "ankle", "toe")  # What the names of the legs' joints hold.
+ITERATIONS = 12  # Steps of inverse kinematics a frame at most [1].
 
 
 Place = tuple[float, float]
@@ -191,8 +187,7 @@ class _Stepper:
             self.bears[side].append(side != swings)
 
 
-INSIDE_MM = 10.0
-"""How far inside the soles that bear it the centre of mass stays [mm]."""
+INSIDE_MM = 10.0  # How far inside the soles that bear it the centre of mass stays [mm].
 
 
 def stepping_quality(made: Stepping) -> Quality:
@@ -252,18 +247,14 @@ GRID_M = 0.1
 AHEAD, ASIDE = range(-3, 11), range(-5, 6)
 """The places that are considered, from the given one ahead and to the left [grid steps]."""
 
-FARTHEST_M = GRID_M * AHEAD[-1]
-"""How far ahead it is stepped at most [m]."""
+FARTHEST_M = GRID_M * AHEAD[-1]  # How far ahead it is stepped at most [m].
 
 REACH, HIGHEST = 0.62, 1.3
 """No posture reaches the middle of an object farther away on the floor, or higher above it
 [share of stature] (estimate)."""
 
-MOST_TRIES = 6
-"""So many places are tried of those that are as many steps away [1]."""
-
-MOST_NAMED = 3
-"""So many of them are named where none helps [1]."""
+MOST_TRIES = 6  # So many places are tried of those that are as many steps away [1].
+MOST_NAMED = 3  # So many of them are named where none helps [1].
 
 Made = TypeVar("Made")
 

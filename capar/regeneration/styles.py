@@ -42,8 +42,7 @@ def style_kind(name: str) -> Kind:
     return Kind(name)
 
 
-SHORTEST_S = 0.15
-"""A shorter hold may not be observed any more [s]."""
+SHORTEST_S = 0.15  # A shorter hold may not be observed any more [s].
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,11 +146,8 @@ def smoothed(
     return np.stack(columns, axis=1)
 
 
-SHORTEST_M = 0.02
-"""Object and hand or shoulder that are nearer have no direction between them [m]."""
-
-UPRIGHT = 0.02
-"""Sine of the angle to the vertical below which x has no direction [1]."""
+SHORTEST_M = 0.02  # Object and hand or shoulder that are nearer have no direction between them [m].
+UPRIGHT = 0.02  # Sine of the angle to the vertical below which x has no direction [1].
 
 
 class CoordinateError(PlanError):
@@ -202,14 +198,9 @@ def replayed(
     return np.asarray(new + local @ new_axes.T)
 
 
-SHORT_M = 0.05
-"""A shorter path from start to goal has no direction of its own [m]."""
-
-SMALLEST_M = 1e-6
-"""Added to the path of every frame, so that time is a function of the path [m]."""
-
-PEAK = 256.0 / 27.0
-"""Makes the largest value of s (1 - s)^3 one [1]."""
+SHORT_M = 0.05  # A shorter path from start to goal has no direction of its own [m].
+SMALLEST_M = 1e-6  # Added to the path of every frame, so that time is a function of the path [m].
+PEAK = 256.0 / 27.0  # Makes the largest value of s (1 - s)^3 one [1].
 
 
 @dataclass(frozen=True)
@@ -274,7 +265,9 @@ def mapped(
     """
     old, chord = path.translation, path.translation[-1] - path.translation[0]
     new = goal.translation - start.translation
-    shares = arc_shares(old) if kind is not Kind.EVEN else _minimum_jerk(len(path))
+    s = np.linspace(0.0, 1.0, len(path))
+    least_jerk = s**3 * (10.0 - 15.0 * s + 6.0 * s * s)  # Flash & Hogan 1985
+    shares = arc_shares(old) if kind is not Kind.EVEN else least_jerk
     straight, length = kind in {Kind.VEL, Kind.EVEN}, float(np.linalg.norm(chord))
     # How far along the straight path each frame is; by the path's length where that is short.
     by_length = straight or length <= SHORT_M
@@ -302,12 +295,6 @@ def mapped(
     even = _even(start.rotation, goal.rotation, shares)
     turns = about * deviation * about.inv() * even
     return RigidTransform.from_components(retimed(spots, shares), turns)
-
-
-def _minimum_jerk(frames: int) -> Float[np.ndarray, "frames"]:
-    """Shares of the path with the least jerk (Flash & Hogan 1985) [1]."""
-    s = np.linspace(0.0, 1.0, frames)
-    return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s * s))
 
 
 def _even(first: Rotation, last: Rotation, shares: Float[np.ndarray, "frames"]) -> Rotation:

@@ -19,7 +19,6 @@ from capar.pipelines.recordings import observed_recording
 from capar.pipelines.round_trips import observed_source
 from capar.regeneration.roles import AmbiguousError, Binding, Role, bind, roles_of
 from capar.regeneration.scenes import PlanError, Scene
-from kb import Actionary
 from kb.lookup.agents import Ability
 
 MUG = Role("mug", "mug", TagType.MOBILE, (), moved=True)
@@ -164,15 +163,3 @@ def test_an_action_of_the_actionary_is_performed_on_what_is_stated_or_refused_wi
         "crate": "a",
         "table": "table",
     }
-
-
-def test_an_agent_that_is_declared_has_the_body_of_its_kind_and_its_abilities(
-    worlds: Worlds, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with Actionary.open(worlds.actionary) as words:
-        words.declare_agent("tim", kind="child", can=["Reach"])
-    asked = ("regenerate", "touch", "--agent", "tim", *worlds.options)
-    assert exit_code(monkeypatch, *asked) == 2
-    assert "`capar agent can tim Touch ResumePosture`" in capsys.readouterr().err
-    assert exit_code(monkeypatch, *asked, "--object", "crate") == 2
-    assert "--object takes PART=THING" in capsys.readouterr().err

@@ -1,22 +1,15 @@
 """Several things in one hand: they go together, and a hand that is too small is told."""
 
-from functools import cache
-
 import numpy as np
 import pytest
+from recorded_actions import good_trip, recorded
 from scipy.spatial.transform import RigidTransform
 
-from capar.body.scripted_actions import action_capture
-from capar.pipelines.round_trips import body, observed_source, round_trip
-from capar.regeneration import PlanError, Source
+from capar.pipelines.round_trips import body
+from capar.regeneration import PlanError
 from capar.regeneration.holds import Hold, co_held_of
-from capar.regeneration.scenes import drawn_scene, moved, raised, resized_with
+from capar.regeneration.scenes import moved, raised, resized_with
 from capar.regeneration.search import reachable
-
-
-@cache
-def _source() -> Source:
-    return observed_source(action_capture("carry_two", rate_hz=30.0))
 
 
 def _way(*heights: float) -> RigidTransform:
@@ -24,21 +17,20 @@ def _way(*heights: float) -> RigidTransform:
 
 
 def test_two_things_in_one_palm_are_observed_as_held_by_one_hand() -> None:
-    steps = [s for s in _source().observation.segments if s.ee == "right_hand"]
+    steps = [s for s in recorded("carry_two").observation.segments if s.ee == "right_hand"]
     both = {step.name for step in steps if set(step.objects) >= {"carton", "tin"}}
     assert {"Reach", "Lift", "Carry", "Lower", "Withdraw"} <= both
-    (companion,) = _source().co_held
+    (companion,) = recorded("carry_two").co_held
     assert (companion.hold.thing, companion.lead.thing) == ("tin", "carton")
 
 
 @pytest.mark.parametrize("agent", ["woman", "child"])
 def test_another_body_carries_both_and_neither_slides_in_its_hand(agent: str) -> None:
-    source = _source()
+    source = recorded("carry_two")
     scene = resized_with(raised(source.scene, "table", -0.1), "carton", 1.2)
-    trip = round_trip(source, agent, body(agent, source), 1, scene)
-    assert trip.passed, (trip.refused, trip.names, trip.quality and trip.quality.failed)
-    assert trip.motion is not None
-    assert trip.quality is not None
+    trip = good_trip(source, agent, scene)
+    assert trip.motion
+    assert trip.quality
     things = trip.motion.plan.things
     seat = things["carton"].inv() * things["tin"]
     assert np.ptp(seat.translation, axis=0).max() < 1e-9
@@ -48,14 +40,14 @@ def test_another_body_carries_both_and_neither_slides_in_its_hand(agent: str) ->
 
 
 def test_a_hand_that_is_too_small_for_both_is_refused_with_what_would_do() -> None:
-    source = _source()
+    source = recorded("carry_two")
     large = resized_with(source.scene, "carton", 3.0)
     with pytest.raises(PlanError, match=r"too small to hold 'tin' .* of 0.7 times the size would"):
         reachable(source, large, body("child", source))
 
 
 def test_what_does_not_stand_together_is_not_taken_together() -> None:
-    source = _source()
+    source = recorded("carry_two")
     tin = source.scene.thing("tin")
     x, y, z = tin.place
     apart = moved(source.scene, "tin", (x + 0.05, y, z), tin.heading)
@@ -64,17 +56,6 @@ def test_what_does_not_stand_together_is_not_taken_together() -> None:
     inside = moved(source.scene, "tin", (x - 0.02, y, z), tin.heading)
     with pytest.raises(PlanError, match="12 mm inside 'carton'"):
         reachable(source, inside, body("man", source))
-
-
-def test_a_drawn_scene_draws_both_as_one() -> None:
-    scene = _source().scene
-    drawn = drawn_scene(scene, np.random.default_rng(5))
-    factor = drawn.thing("tin").size / scene.thing("tin").size
-    np.testing.assert_allclose(drawn.thing("carton").size, factor * scene.thing("carton").size)
-    was, now = (
-        np.subtract(one.thing("tin").place, one.thing("carton").place) for one in (scene, drawn)
-    )
-    np.testing.assert_allclose(now[:2], factor[:2] * was[:2], atol=1e-9)
 
 
 def test_a_hand_that_moves_one_of_two_alone_is_refused() -> None:

@@ -6,9 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from exit_codes import exit_code
 
-from capar.body.recording import Truth, write_bundle
 from capar.body.scripted_actions import action_capture
 from capar.model.capture import Capture, Sensor, Stream
 from capar.model.errors import CaparError, FileError
@@ -162,20 +160,3 @@ def test_every_key_of_a_file_is_read(tmp_path: Path) -> None:
     assert len(found.notes) == 6
     assert found.stance is not None
     np.testing.assert_allclose(found.stance[1], 0.5 * np.pi)
-
-
-@pytest.mark.parametrize("command", ["regenerate", "roundtrip"])
-def test_what_is_assumed_is_read_by_both_commands(
-    command: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    folder, assumed = tmp_path / "take", tmp_path / "assumed.toml"
-    write_bundle(_carried(), Truth((), (), (), ()), folder)
-    assumed.write_text("from_s = 50\nto_s = 60\n")
-    assert exit_code(monkeypatch, command, str(folder), "--assume", str(assumed)) == 2
-    assert "is between 50 and 60 s; it lasts" in capsys.readouterr().err
-    missing = str(tmp_path / "none.toml")
-    assert exit_code(monkeypatch, command, str(folder), "--assume", missing) == 2
-    assert "none.toml" in capsys.readouterr().err

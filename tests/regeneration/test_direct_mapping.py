@@ -15,7 +15,6 @@ from capar.body.scripted_actions import action_capture
 from capar.pipelines.round_trips import observed_source
 from capar.regeneration import Source, map_directly
 from capar.regeneration.direct_mapping import axis_mapped, departures
-from capar.regeneration.styles import SHORT_M
 
 RATE_HZ = 30.0
 
@@ -36,26 +35,10 @@ def test_a_mapped_path_has_the_ends_that_were_asked_for(
     np.testing.assert_allclose(made[[0, -1]], [start, goal], atol=1e-9)
 
 
-@given(PATHS)
-def test_a_path_with_its_own_ends_stays_as_it_is(path: np.ndarray) -> None:
-    np.testing.assert_allclose(axis_mapped(path, path[0], path[-1]), path, atol=1e-9)
-
-
 @given(PATHS, PLACES)
 def test_a_path_that_is_moved_as_a_whole_keeps_its_shape(path: np.ndarray, by: np.ndarray) -> None:
     made = axis_mapped(path, path[0] + by, path[-1] + by)
     np.testing.assert_allclose(made, path + by, atol=1e-9)
-
-
-@given(PATHS, PLACES, PLACES)
-def test_each_wide_axis_is_mapped_by_the_equation(
-    path: np.ndarray, start: np.ndarray, goal: np.ndarray
-) -> None:
-    made = axis_mapped(path, start, goal)
-    for axis in np.flatnonzero(np.abs(path[-1] - path[0]) > SHORT_M):
-        x, new = path[:, axis], made[:, axis]
-        share = (x - x[0]) / (x[-1] - x[0])
-        np.testing.assert_allclose(new, share * (goal[axis] - start[axis]) + start[axis], atol=1e-9)
 
 
 @pytest.mark.long

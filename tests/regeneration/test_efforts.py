@@ -1,22 +1,15 @@
 """Efforts reshape timing and paths between events, within limits."""
 
-import json
-from functools import cache
-from pathlib import Path
-
 import numpy as np
 import pytest
-from exit_codes import exit_code
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from jaxtyping import Float
+from recorded_actions import recorded
 from scipy.spatial.transform import RigidTransform
 
-from capar.body.recording import Truth, write_bundle
-from capar.body.scripted_actions import action_capture
 from capar.model.errors import CaparError
 from capar.pipelines.observation import observe
-from capar.pipelines.round_trips import observed_source
 from capar.regeneration import PlanError, Source, capture_of
 from capar.regeneration.efforts import (
     Effort,
@@ -30,7 +23,6 @@ from capar.regeneration.efforts import (
     regenerate_in_manner,
     shaped,
     timed,
-    told_of_words,
     with_effort,
 )
 from capar.regeneration.motion import Motion
@@ -48,11 +40,6 @@ def _performed(
     )
     assert report is not None
     return motion, found, report
-
-
-@cache
-def _source(action: str) -> Source:
-    return observed_source(action_capture(action, "man", rate_hz=30.0))
 
 
 @st.composite
@@ -131,42 +118,23 @@ def test_more_indirect_is_a_longer_way(
     assert indirect >= direct - 1e-9
 
 
-@given(ways(), EFFORTS, EFFORTS)
-def test_ends_stay_where_they_are(
-    spots: Float[np.ndarray, "frames 3"], space: float, weight: float
-) -> None:
-    made = shaped(spots, space, weight, np.ones(len(spots)))
-    np.testing.assert_allclose(made[[0, -1]], spots[[0, -1]], atol=1e-9)
-
-
-def test_no_effort_leaves_the_style_as_it_is() -> None:
-    source = _source("carry")
-    style = own_style(source)
-    made = with_effort(style, source, Effort())
-    for old, new in ((style.hands, made.hands), (style.things, made.things)):
-        for name, path in old.items():
-            np.testing.assert_allclose(new[name].translation, path.translation, atol=1e-6)
-            off = (new[name].rotation * path.rotation.inv()).magnitude()
-            assert off.max() < 1e-4
-
-
 @settings(max_examples=10)
 @given(EFFORTS, EFFORTS, EFFORTS, EFFORTS)
 def test_events_keep_their_frames_and_places(
     time: float, weight: float, space: float, flow: float
 ) -> None:
-    source = _source("touch")
+    source = recorded("touch")
     made = with_effort(own_style(source), source, Effort(time, weight, space, flow))
     hold = source.holds[0]
-    recorded = source.hands[hold.side].path
+    path = source.hands[hold.side].path
     for frame in (0, hold.first, hold.last, len(source.times) - 1):
-        off: RigidTransform = recorded[frame].inv() * made.hands[hold.side][frame]
+        off: RigidTransform = path[frame].inv() * made.hands[hold.side][frame]
         assert np.linalg.norm(off.translation) < 1e-6
         assert off.rotation.magnitude() < 1e-6
 
 
 def test_what_slides_on_a_table_stays_on_it_in_any_manner() -> None:
-    source = _source("slide")
+    source = recorded("slide")
     made = with_effort(own_style(source), source, Effort(weight=-1.0, space=-1.0))
     np.testing.assert_allclose(
         made.things["mug"].translation[:, 2], source.paths["mug"].translation[:, 2], atol=1e-4
@@ -174,11 +142,10 @@ def test_what_slides_on_a_table_stays_on_it_in_any_manner() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "parameter", "value"),
-    [("sudden=0.5", "time", 0.5), ("time=-0.5", "time", -0.5), ("indirect=0.5", "space", -0.5)],
+    ("text", "parameter", "value"), [("time=-0.5", "time", -0.5), ("indirect=0.5", "space", -0.5)]
 )
 def test_an_effort_is_performed_with_every_gate(text: str, parameter: str, value: float) -> None:
-    source = _source("touch")
+    source = recorded("touch")
     motion, found, report = _performed(source, read_effort(text))
     assert found.passed, found.failed
     assert report.performed.values[parameter] == value
@@ -187,7 +154,7 @@ def test_an_effort_is_performed_with_every_gate(text: str, parameter: str, value
 
 
 def test_a_sudden_performance_is_shorter_unless_a_duration_is_stated() -> None:
-    source = _source("touch")
+    source = recorded("touch")
     usual_s, lasts_s = float(source.times[-1]), []
     for duration_s in (None, 5.0):
         motion, _, _ = _performed(source, Effort(time=0.5), duration_s)
@@ -197,7 +164,7 @@ def test_a_sudden_performance_is_shorter_unless_a_duration_is_stated() -> None:
 
 
 def test_what_limits_do_not_allow_is_scaled_down_and_told_with_by_how_much() -> None:
-    source = _source("touch")
+    source = recorded("touch")
     with pytest.raises(PlanError) as refused:
         paced(source, 0.5)
     least_s = float(str(refused.value).split("at least ")[1].split()[0])
@@ -224,7 +191,7 @@ def test_what_is_no_effort_is_refused_with_what_would_be_one(text: str, problem:
 
 
 def test_styles_without_a_shape_or_speeds_of_their_own_have_no_effort() -> None:
-    source = _source("touch")
+    source = recorded("touch")
     with pytest.raises(PlanError, match="path or frame would do"):
         check_effort(source, own_style(source, Kind.EVEN), Effort(time=0.5))
     with pytest.raises(PlanError, match="path or frame would do"):
@@ -239,20 +206,3 @@ def test_adverbs_ask_for_efforts_together_and_no_further_than_to_a_pole() -> Non
     assert both.time == -1.0
     assert effort_of_words(["blue"]) is None
     assert all(any(effort.values.values()) for effort in adverbs().values())
-    told = told_of_words(["slowly", "again"], stated=False)
-    assert told[0].startswith("'slowly' asks for the effort time -0.50")
-    assert told[1] == "'again' has no effect"
-    assert "an effort is stated" in told_of_words(["slowly"], stated=True)[0]
-
-
-def test_the_command_says_what_was_performed_and_refuses_what_is_no_effort(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
-    folder = tmp_path / "touch"
-    write_bundle(_source("touch").capture, Truth((), (), (), ()), folder)
-    asked = ("regenerate", str(folder), "--effort")
-    assert exit_code(monkeypatch, *asked, "sudden=2") == 2
-    assert "from -1 (sustained) to 1 (sudden)" in capsys.readouterr().err
-    assert exit_code(monkeypatch, *asked, "light=0.4", "--json") == 0
-    told = json.loads(capsys.readouterr().out)["effort"]
-    assert told["asked"]["weight"] == told["performed"]["weight"] == -0.4

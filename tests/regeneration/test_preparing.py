@@ -4,16 +4,16 @@ import json
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from exit_codes import exit_code
+from recorded_actions import recorded
 from recorded_worlds import Worlds, worlds_in
 
 from capar.body.scenes import Thing, box
-from capar.body.scripted_actions import ACTIONS, action_capture
+from capar.body.scripted_actions import ACTIONS
 from capar.model.capture import TagType
 from capar.pipelines.instantiation import Asked, Instance, instantiate
 from capar.pipelines.preparation import (
@@ -29,18 +29,12 @@ from capar.pipelines.preparation import (
     unmet,
 )
 from capar.pipelines.recordings import observed_recording
-from capar.pipelines.round_trips import observed_source
 from capar.pipelines.trials import trial_of
-from capar.regeneration import PlanError, Source, regenerate
+from capar.regeneration import regenerate
 from capar.regeneration.quality import Asserted, contact_gate
 from capar.regeneration.scenes import Scene
 
 RATE_HZ = 30.0
-
-
-@cache
-def _source(action: str) -> Source:
-    return observed_source(action_capture(action, rate_hz=RATE_HZ))
 
 
 def _kinds(kind: str) -> tuple[str, ...]:
@@ -48,15 +42,15 @@ def _kinds(kind: str) -> tuple[str, ...]:
 
 
 def _instance(action: str, scene: Scene | None = None) -> Instance:
-    source = _source(action)
+    source = recorded(action)
     asked = Asked(action, ("man",), source.human, {}, scene or source.scene, own=True)
     recording = observed_recording(source.observation, Path(action))
     return instantiate(asked, recording, source, _kinds, lambda _: ())
 
 
 def _ways(*actions: str) -> tuple[Procedure, ...]:
-    recordings = [observed_recording(_source(one).observation, Path(one)) for one in actions]
-    return procedures_of(recordings, lambda recording: _source(recording.name))
+    recordings = [observed_recording(recorded(one).observation, Path(one)) for one in actions]
+    return procedures_of(recordings, lambda recording: recorded(recording.name))
 
 
 def _beside(scene: Scene, tag: TagType = TagType.MOBILE) -> Scene:
@@ -74,7 +68,7 @@ def _problem(action: str, scene: Scene, *touching: tuple[str, str]) -> Problem:
 def test_nothing_has_to_be_prepared_for_an_action_in_the_scene_in_which_it_was_recorded(
     action: str,
 ) -> None:
-    source = _source(action)
+    source = recorded(action)
 
     def unopened() -> tuple[Procedure, ...]:
         raise AssertionError
@@ -86,7 +80,7 @@ def test_nothing_has_to_be_prepared_for_an_action_in_the_scene_in_which_it_was_r
 
 
 def test_what_stands_in_the_goal_place_is_moved_by_the_shortest_recorded_way() -> None:
-    problem = _problem("carry", _beside(_source("carry").scene))
+    problem = _problem("carry", _beside(recorded("carry").scene))
     assert unmet(problem) == (("clear", "mug"),)
     ((stage,), left) = shortest(problem, _ways("carry", "slide"))
     assert not left
@@ -110,11 +104,11 @@ def test_what_stands_in_the_goal_place_is_moved_by_the_shortest_recorded_way() -
 
 
 def test_a_hand_that_holds_something_puts_it_down_before_it_reaches_for_another_thing() -> None:
-    scene = _beside(_source("carry").scene)
+    scene = _beside(recorded("carry").scene)
     x, y, z = scene.thing("mug").place
     raised = replace(scene.thing("mug"), place=(x, y, z + 0.2))
     scene = replace(scene, things={**scene.things, "mug": raised})
-    source = _source("touch")
+    source = recorded("touch")
     things = {**scene.things, "crate": source.scene.thing("crate")}
     problem = _problem("touch", replace(scene, things=things), ("right", "mug"))
     assert unmet(problem) == (("free", "right"),)
@@ -123,19 +117,8 @@ def test_a_hand_that_holds_something_puts_it_down_before_it_reaches_for_another_
     assert stage.touching == frozenset()
 
 
-def test_what_stands_on_a_thing_is_put_elsewhere_before_that_is_moved() -> None:
-    scene = _source("push").scene
-    x, y, z = scene.thing("crate").place
-    mug = replace(_source("carry").scene.thing("mug"), place=(x, y, z + 0.22))
-    problem = _problem("push", replace(scene, things={**scene.things, "mug": mug}))
-    assert ("bare", "crate") in unmet(problem)
-    ((stage,), left) = shortest(problem, _ways("push", "carry"))
-    assert not left
-    assert (stage.steps[0].thing, stage.goal and stage.goal.support) == ("mug", "table")
-
-
 def test_a_table_that_is_not_as_geometry_has_it_fails_with_both_said() -> None:
-    source = _source("touch")
+    source = recorded("touch")
     motion, found = regenerate(source, source.human)
     assert found.passed
     steps = asserted(source)
@@ -151,20 +134,8 @@ def test_a_table_that_is_not_as_geometry_has_it_fails_with_both_said() -> None:
     )
 
 
-def test_what_is_further_than_any_body_reaches_is_refused_at_once_with_how_far_it_is() -> None:
-    scene = _source("touch").scene
-    x, y, z = scene.thing("crate").place
-    away = replace(scene.thing("crate"), place=(x + 2.0, y, z))
-    wide = replace(scene.thing("table"), shape=box(5.0, 1.2, 0.03))
-    far = replace(scene, things={**scene.things, "crate": away, "table": wide})
-    with pytest.raises(
-        PlanError, match=r"'crate' is 2\.\d m from .* standing 0\.\d m nearer to it"
-    ):
-        _instance("touch", far)
-
-
 def _crowded() -> Iterator[Thing]:
-    scene = _beside(_source("carry").scene)
+    scene = _beside(recorded("carry").scene)
     for thing in scene.things.values():
         yield replace(thing, kind=thing.kind or thing.name)
 

@@ -6,33 +6,23 @@ from functools import cache
 
 import numpy as np
 import pytest
-import trimesh
+from recorded_actions import recorded
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.recording import HAND_SEGMENTS
-from capar.body.scenes import Thing
-from capar.body.scripted_actions import action_capture
-from capar.model.capture import Capture, Shape, Stream, TagType
+from capar.model.capture import Capture, Stream
 from capar.model.facts import Displaced, Touching
-from capar.pipelines.round_trips import body, observed_source
+from capar.pipelines.round_trips import body
 from capar.regeneration import PlanError
 from capar.regeneration.body_frames import body_frames, free_pose, rest_pose
-from capar.regeneration.collisions import Surroundings
 from capar.regeneration.goals import TOUCH_M, touching_shift
 from capar.regeneration.grips import Turn, drawn_turns
-from capar.regeneration.holds import INSTANTS, Hold, holds_of, with_touches
+from capar.regeneration.holds import Hold, holds_of, with_touches
 from capar.regeneration.planning import Draft
-from capar.regeneration.scenes import Scene
-from capar.regeneration.solving import Solver
-from capar.regeneration.sources import Source, source_of, stated_hand_frame
+from capar.regeneration.sources import source_of, stated_hand_frame
 from capar.regeneration.styles import own_style
 
 RATE_HZ = 30.0
-
-
-@cache
-def _source(action: str) -> Source:
-    return observed_source(action_capture(action, rate_hz=RATE_HZ))
 
 
 def _shifted(capture: Capture, name: str, off_m: np.ndarray) -> Capture:
@@ -47,7 +37,7 @@ def _shifted(capture: Capture, name: str, off_m: np.ndarray) -> Capture:
 
 @pytest.mark.parametrize("into_m", [0.02, 0.05, 0.08])
 def test_a_palm_faces_what_it_touches_though_the_hand_was_recorded_inside(into_m: float) -> None:
-    source = _source("touch")
+    source = recorded("touch")
     hand = source.hands["right"]
     palm = hand.path[source.holds[0].first].rotation.apply([0.0, 0.0, 1.0])
     capture = _shifted(source.capture, "crate", -into_m * palm)
@@ -57,7 +47,7 @@ def test_a_palm_faces_what_it_touches_though_the_hand_was_recorded_inside(into_m
 
 
 def test_a_stated_palm_is_kept_whatever_shape_the_hand_has() -> None:
-    source = _source("touch")
+    source = recorded("touch")
     axes = np.array([1.0, 0.3, 0.0]), np.array([0.0, 0.0, -2.0])
     stated = source_of(source.capture, source.observation, axes={"right": axes}).hands["right"]
     turn = stated.frame.pose.rotation.as_matrix()
@@ -86,7 +76,7 @@ def test_a_hand_is_moved_to_the_nearest_surface(
 
 @cache
 def _draft() -> Draft:
-    source = _source("pick_up")
+    source = recorded("pick_up")
     return Draft(source, source.scene, source.human, own_style(source))
 
 
@@ -104,35 +94,6 @@ def test_a_hand_that_is_drawn_back_still_touches(turn: Turn) -> None:
     pairs = around.near([f"{hold.side}_{part}" for part in HAND_SEGMENTS])
     gap_m = min(pair.distance_m for pair in pairs if pair.thing == hold.thing)
     assert abs(gap_m - TOUCH_M) < 5e-4
-
-
-def _frame(outer_m: float, inner_m: float) -> Shape:
-    """A square picture frame in the y-z plane, 2 cm deep, of four overlapping bars."""
-    wide, middle = outer_m - inner_m, 0.5 * (outer_m + inner_m)
-    box = trimesh.creation.box((0.02, 2.0 * outer_m, wide))
-    bar = np.array(box.vertices) + np.array([0.0, 0.0, middle])
-    turns = Rotation.from_euler("x", 90.0 * np.arange(4)[:, None], degrees=True)
-    vertices = np.concatenate([turn.apply(bar) for turn in turns])
-    faces = np.concatenate([np.array(box.faces) + len(bar) * number for number in range(4)])
-    return Shape(vertices, faces)
-
-
-def test_what_is_in_an_opening_of_a_hollow_thing_is_as_far_from_it_as_its_surface_is() -> None:
-    human = _source("touch").human
-    palm = Solver(human, (0.0, 0.0, 0.0), 0.0).palm("right").translation
-    scene = Scene({}, (0.0, 0.0), 0.0)
-    for inner_m in (0.14, 0.18):
-        frame = Thing(
-            "frame", _frame(inner_m + 0.05, inner_m), (0.0, 0.0, 0.0), 0.0, TagType.MOBILE
-        )
-        around = Surroundings(human, replace(scene, things={"frame": frame}))
-        pose = RigidTransform.from_components(palm, Rotation.identity())
-        around.pose(Solver(human, (0.0, 0.0, 0.0), 0.0).rest, {"frame": pose})
-        found = {pair.part: pair.distance_m for pair in around.near(["right_hand"])}
-        if inner_m == 0.18:
-            assert not found  # further than is measured
-        else:
-            assert 0.02 < found["right_hand"] < 0.08
 
 
 def _sliding(far_m: float, over: np.ndarray) -> RigidTransform:
@@ -191,20 +152,8 @@ def test_a_touch_before_the_thing_moves_is_held_long_enough_to_be_seen(
     assert (hold.first, hold.last) == held
 
 
-def test_what_is_tipped_at_the_mouth_meets_it_from_when_it_comes_to_when_it_leaves() -> None:
-    source = _source("sip")
-    (contact,) = (
-        fact
-        for fact in source.observation.facts
-        if isinstance(fact, Touching) and {fact.body, fact.other} == {"mug", "head"}
-    )
-    frames = [meeting.first for meeting in source.meetings]
-    assert [meeting.last for meeting in source.meetings] == frames == sorted(set(frames))
-    assert (frames[0], frames[-1], len(frames)) == (contact.first, contact.last, INSTANTS)
-
-
 def test_a_hand_that_is_about_to_arrive_when_the_recording_begins_is_as_far_from_there() -> None:
-    source = _source("touch")
+    source = recorded("touch")
     woman = body_frames(body("woman", source), source.scene)
     man = body_frames(source.human, source.scene)
     (hold,), hand = source.holds, source.hands["right"].path

@@ -7,17 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exit_codes import exit_code
+from recorded_actions import recorded
 
 from capar.body.recording import Truth, write_bundle
 from capar.body.scripted_actions import action_capture
 from capar.model.capture import Capture
 from capar.pipelines.round_trips import body, observed_source, round_trips
-from capar.regeneration import Motion, PlanError, Quality, Source, regenerate
+from capar.regeneration import Motion, PlanError, Quality, regenerate
 from capar.regeneration.body_frames import body_frames
 from capar.regeneration.direct_mapping import departures
-from capar.regeneration.motion import perform_plan
-from capar.regeneration.paths import Care
-from capar.regeneration.planning import led
 from capar.regeneration.quality import quality
 from capar.regeneration.scenes import raised
 from capar.regeneration.search import reachable
@@ -29,18 +27,13 @@ RATE_HZ = 30.0
 
 
 @cache
-def _source(action: str) -> Source:
-    return observed_source(action_capture(action, rate_hz=RATE_HZ))
-
-
-@cache
 def _done(action: str, agent: str) -> tuple[Motion, Quality]:
-    source = _source(action)
+    source = recorded(action)
     return regenerate(source, body(agent, source))
 
 
 def test_the_frame_on_a_recorded_hand_is_the_one_on_the_body_that_was_recorded() -> None:
-    source = _source("drink")
+    source = recorded("drink")
     for side, hand in source.hands.items():
         own = body_hand_frame(source.human, side)
         np.testing.assert_allclose(hand.frame.extents, own.extents, atol=2e-4)
@@ -58,7 +51,7 @@ def test_the_recorded_body_in_the_recorded_scene_goes_the_recorded_way(action: s
 
 
 def test_a_child_drinks_at_its_own_mouth_and_the_same_action_is_observed() -> None:
-    source = _source("drink")
+    source = recorded("drink")
     (trip,) = round_trips(source, ("child",))
     assert trip.quality is not None
     assert trip.quality.passed, trip.quality.failed
@@ -114,22 +107,21 @@ def test_a_spoilt_motion_does_not_pass(spoilt: object, gate: str) -> None:
 
 
 def test_out_of_reach_is_decided_before_anything_moves_with_what_would_help() -> None:
-    source = _source("touch")
+    source = recorded("touch")
     scene = replace(source.scene, place=(-0.8, 0.0), stays=True)
     with pytest.raises(PlanError, match=r"misses by \d+ mm.*; standing \d\.\d\d m further ahead"):
         reachable(source, scene, source.human)
 
 
 def test_nobody_stands_inside_a_table() -> None:
-    source = _source("touch")
+    source = recorded("touch")
     with pytest.raises(PlanError, match="inside 'table'; stand further back"):
         reachable(source, replace(source.scene, place=(0.3, 0.0), stays=True), source.human)
 
 
 def test_the_same_input_gives_the_same_motion() -> None:
-    source = _source("touch")
-    made = led(reachable(source, source.scene, source.human), Care())
-    one, two = (perform_plan(made).postures for _ in range(2))
+    source = recorded("touch")
+    one, two = (regenerate(source, source.human)[0].postures for _ in range(2))
     assert one.tobytes() == two.tobytes()
 
 
@@ -149,24 +141,11 @@ def test_a_regenerated_bundle_is_observed_as_the_same_action(
     assert "event position" in table
     assert "penetration" in table
     again = observed_source(child).observation
-    first = _source("touch").observation.complex_par
+    first = recorded("touch").observation.complex_par
     assert again.complex_par.signature == first.signature
     assert again.agent.kind == "child"
     assert exit_code(monkeypatch, "regenerate", str(folder), "--output", str(child)) == 2
     assert "not an empty folder" in capsys.readouterr().err
-
-
-def test_what_cannot_be_done_ends_with_2_and_a_sentence_and_writes_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    folder = _written(action_capture("touch", rate_hz=RATE_HZ), tmp_path / "man")
-    scene = tmp_path / "scene.toml"
-    scene.write_text("[stance]\nplace = [0.3, 0.0]\n")
-    out = tmp_path / "out"
-    arguments = ("regenerate", str(folder), "--scene", str(scene), "--output", str(out))
-    assert exit_code(monkeypatch, *arguments) == 2
-    assert "inside 'table'" in capsys.readouterr().err
-    assert not out.exists()
 
 
 def test_a_capture_without_a_head_is_refused() -> None:

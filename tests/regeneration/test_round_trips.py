@@ -1,13 +1,10 @@
 """What one body did another does in a drawn scene, and the same action is observed again."""
 
-from functools import cache
-
 import numpy as np
 import pytest
+from recorded_actions import recorded
 
-from capar.body.scripted_actions import action_capture
-from capar.pipelines.round_trips import body, numbered_scene, observed_source, round_trip
-from capar.regeneration import Source
+from capar.pipelines.round_trips import body, numbered_scene, round_trip
 from capar.regeneration.search import reachable
 
 pytestmark = pytest.mark.long
@@ -41,14 +38,9 @@ More of them: ``benchmarks/regeneration.py``.
 """
 
 
-@cache
-def _source(action: str) -> Source:
-    return observed_source(action_capture(action, rate_hz=RATE_HZ))
-
-
 @pytest.mark.parametrize(("action", "agent", "number"), TRIPS)
 def test_the_same_action_comes_out_of_a_good_motion(action: str, agent: str, number: int) -> None:
-    source = _source(action)
+    source = recorded(action)
     scene = numbered_scene(source, number, SEED)
     trip = round_trip(source, agent, body(agent, source), number, scene)
     assert not trip.refused
@@ -60,7 +52,7 @@ def test_the_same_action_comes_out_of_a_good_motion(action: str, agent: str, num
 
 @pytest.mark.parametrize("number", [2, 3])
 def test_a_mug_is_emptied_over_the_bowl_wherever_that_stands(number: int) -> None:
-    source = _source("pour")
+    source = recorded("pour")
     scene = numbered_scene(source, number, SEED)
     bowl = scene.thing("bowl")
     apart = np.array(bowl.place[:2]) - source.scene.thing("bowl").place[:2]
@@ -75,7 +67,7 @@ def test_a_mug_is_emptied_over_the_bowl_wherever_that_stands(number: int) -> Non
 
 
 def test_a_thing_that_only_turns_is_turned_as_far() -> None:
-    source = _source("turn")
+    source = recorded("turn")
     scene = numbered_scene(source, 1, SEED)
     draft = reachable(source, scene, body("child", source))
     path = draft.things["mug"]

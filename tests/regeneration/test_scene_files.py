@@ -7,36 +7,13 @@ import pytest
 
 from capar.body.scenes import Thing, box, cup, table
 from capar.model.errors import CaparError
-from capar.regeneration.scenes import (
-    ASIDE_M,
-    HEIGHTS_M,
-    SIZES,
-    Scene,
-    drawn_scene,
-    raised,
-    read_scene,
-    resized,
-)
+from capar.regeneration.scenes import ASIDE_M, HEIGHTS_M, SIZES, Scene, drawn_scene, read_scene
 
 
 def _scene() -> Scene:
     mug = Thing("mug", cup(0.035, 0.09), (0.45, -0.2, 0.8), round=True)
     crate = Thing("crate", box(0.15, 0.2, 0.15), (0.5, 0.15, 0.8))
     return Scene({each.name: each for each in (table(0.8), mug, crate)}, (0.0, 0.0), 0.0)
-
-
-def test_what_stands_on_a_table_goes_up_with_it() -> None:
-    higher = raised(_scene(), "table", 0.1)
-    assert higher.thing("mug").place[2] == pytest.approx(0.9)
-    assert higher.support("mug") == "table"
-    assert higher.support("table") == ""
-
-
-@pytest.mark.parametrize("factor", [0.7, 1.4])
-def test_a_resized_thing_still_stands_where_it_stood(factor: float) -> None:
-    changed = resized(_scene(), "crate", factor)
-    assert changed.support("crate") == "table"
-    np.testing.assert_allclose(changed.thing("crate").size, factor * _scene().thing("crate").size)
 
 
 def test_a_scene_file_changes_what_it_names_and_nothing_else(tmp_path: Path) -> None:

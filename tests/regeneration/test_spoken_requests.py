@@ -14,12 +14,7 @@ from capar.body.scripted_actions import action_capture
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from capar.pipelines.recordings import Recording, observed_actions, observed_recording
-from capar.pipelines.spoken_requests import (
-    Choice,
-    RequestError,
-    choices,
-    read_requests,
-)
+from capar.pipelines.spoken_requests import Choice, RequestError, choices, read_requests
 from capar.pipelines.trials import trial_of
 
 DRINK = observations.drink_from_mug()
@@ -87,14 +82,6 @@ def test_both_hands_are_taken_from_a_recording_of_both_hands() -> None:
     assert choice.recording.name == "b"
     (choice,) = _chosen("reach for the mug", *known, scene="demo")
     assert choice.recording.name == "a"
-
-
-def test_actions_that_one_recording_does_in_that_order_are_performed_as_one() -> None:
-    known = _recording(DRINK)
-    (choice,) = _chosen("reach for the mug and put it on the table", known, scene="demo")
-    assert [each.action for each in choice.steps] == ["Reach", "MoveObjTo"]
-    first, second = _chosen("put the mug on the table and reach for it", known, scene="demo")
-    assert first.recording is second.recording
 
 
 @pytest.mark.long

@@ -1,25 +1,18 @@
 """How something is done may be another's, in another time, or by the other hand."""
 
-from functools import cache
-
 import numpy as np
 import pytest
+from recorded_actions import recorded
 
-from capar.body.scripted_actions import action_capture
 from capar.pipelines.observation import observe
-from capar.pipelines.round_trips import by_hand, observed_source
-from capar.regeneration import PlanError, Source, capture_of, regenerate
+from capar.pipelines.round_trips import by_hand
+from capar.regeneration import PlanError, capture_of, regenerate
 from capar.regeneration.captures import mirrored
 from capar.regeneration.styles import Kind, arc_shares, borrowed_style, mapped, own_style, paced
 
 
-@cache
-def _source(action: str, who: str = "man") -> Source:
-    return observed_source(action_capture(action, who, rate_hz=30.0))
-
-
 def test_mirrored_twice_is_as_it_was() -> None:
-    capture = _source("touch").capture
+    capture = recorded("touch").capture
     twice = mirrored(mirrored(capture, (0.1, 0.2), 0.7), (0.1, 0.2), 0.7)
     for name, body in capture.bodies.items():
         again = twice.bodies[name].stream
@@ -29,7 +22,7 @@ def test_mirrored_twice_is_as_it_was() -> None:
 
 
 def test_the_left_hand_does_what_the_right_one_did_with_the_same_things() -> None:
-    source = _source("touch")
+    source = recorded("touch")
     left = by_hand(source, "left")
     assert {hold.side for hold in left.holds} == {"left"}
     motion, found = regenerate(left, left.human, source.scene)
@@ -45,7 +38,7 @@ def test_the_left_hand_does_what_the_right_one_did_with_the_same_things() -> Non
 
 @pytest.mark.parametrize("duration_s", [3.5, 8.0])
 def test_in_another_time_everything_takes_as_much_longer(duration_s: float) -> None:
-    source = paced(_source("touch"), duration_s)
+    source = paced(recorded("touch"), duration_s)
     motion, found = regenerate(source, source.human)
     assert found.passed, found.failed
     again = observe(capture_of(motion, name="paced", agent="man"))
@@ -53,16 +46,8 @@ def test_in_another_time_everything_takes_as_much_longer(duration_s: float) -> N
     assert motion.plan.source.times[-1] == pytest.approx(duration_s)
 
 
-def test_what_is_too_fast_to_be_seen_is_refused_with_the_time_that_would_do() -> None:
-    source = _source("touch")
-    with pytest.raises(PlanError, match=r"at least (\d+\.\d) s would do") as refused:
-        paced(source, 0.5)
-    least_s = float(str(refused.value).split("at least ")[1].split()[0])
-    paced(source, least_s + 0.1)
-
-
 def test_a_borrowed_style_has_the_events_of_one_and_the_ways_of_the_other() -> None:
-    source, other = _source("drink"), _source("drink", "woman")
+    source, other = recorded("drink"), recorded("drink", "woman")
     style = borrowed_style(source, other)
     hold, theirs = source.holds[0], other.holds[0]
     ends = style.hands["right"].translation[[hold.first, hold.last]]
@@ -75,12 +60,12 @@ def test_a_borrowed_style_has_the_events_of_one_and_the_ways_of_the_other() -> N
 
 def test_the_style_of_something_else_is_refused() -> None:
     with pytest.raises(PlanError, match="another order of events"):
-        borrowed_style(_source("drink"), _source("touch"))
+        borrowed_style(recorded("drink"), recorded("touch"))
 
 
 @pytest.mark.parametrize("kind", list(Kind))
 def test_every_style_leads_from_the_start_to_the_goal(kind: Kind) -> None:
-    source = _source("touch")
+    source = recorded("touch")
     path = own_style(source).hands["right"][: source.holds[0].first + 1]
     start, goal = path[0], source.hands["left"].path[0]
     made = mapped(path, start, goal, kind=kind)

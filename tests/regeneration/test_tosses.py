@@ -5,47 +5,34 @@ from functools import cache
 
 import numpy as np
 import pytest
+from recorded_actions import recorded
 from scipy.spatial.transform import RigidTransform
 
-from capar.body.scripted_actions import action_capture
-from capar.pipelines.round_trips import Trip, body, observed_source, round_trips
-from capar.regeneration import Motion, PlanError, Source, search
+from capar.pipelines.round_trips import Trip, body, round_trips
+from capar.regeneration import PlanError, search
 from capar.regeneration.body_frames import body_frames
-from capar.regeneration.efforts import read_effort, regenerate_in_manner
-from capar.regeneration.forces import ForceKind, end_velocity, flight_faults
+from capar.regeneration.forces import ForceKind, flight_faults
 from capar.regeneration.goals import object_goals
 from capar.regeneration.holds import releases_of
 from capar.regeneration.quality import quality
 from capar.regeneration.scenes import raised
 from capar.regeneration.search import reachable
-from capar.regeneration.styles import own_style
 from extractors.forces.free_motion import GRAVITY_MPS2
 
 RATE_HZ = 30.0
 
 
 @cache
-def _source() -> Source:
-    return observed_source(action_capture("toss", rate_hz=RATE_HZ))
-
-
-@cache
 def _trip(agent: str) -> Trip:
-    (trip,) = round_trips(_source(), (agent,))
+    (trip,) = round_trips(recorded("toss"), (agent,))
     return trip
 
 
-def _flown(motion: Motion) -> np.ndarray:
-    """Where the mug is from the frame in which it is let go to the one in which it is caught."""
-    (toss,) = motion.plan.source.throws
-    return np.asarray(motion.plan.things["mug"].translation[toss.first : toss.last + 1])
-
-
 def test_a_recording_says_from_which_hand_to_which_it_flies() -> None:
-    (toss,) = _source().throws
+    (toss,) = recorded("toss").throws
     assert (toss.thing, toss.side, toss.catcher) == ("mug", "right", "left")
-    assert not _source().releases
-    throwing, catching = _source().holds
+    assert not recorded("toss").releases
+    throwing, catching = recorded("toss").holds
     assert (throwing.last, catching.first) == (toss.first, toss.last)
 
 
@@ -57,15 +44,8 @@ def test_other_bodies_throw_and_catch_it_with_every_gate_and_the_same_is_observe
     assert trip.passed, trip
 
 
-def test_only_gravity_moves_it_between_the_hands_of_a_child() -> None:
-    motion = _trip("child").motion
-    assert motion is not None
-    bent = np.diff(_flown(motion), n=2, axis=0) * RATE_HZ**2
-    np.testing.assert_allclose(bent, np.tile([0.0, 0.0, -GRAVITY_MPS2], (len(bent), 1)), atol=1e-3)
-
-
 def test_a_child_throws_less_far_in_proportion_or_as_far_with_the_same_motion() -> None:
-    source, child = _source(), body("child", _source())
+    source, child = recorded("toss"), body("child", recorded("toss"))
     old, new = body_frames(source.human, source.scene), body_frames(child, source.scene)
     (toss,) = source.throws
     spots = source.paths["mug"].translation
@@ -104,14 +84,8 @@ def test_what_floats_or_is_pushed_in_flight_fails_the_gates() -> None:
     assert flight_faults(times, pushed)[1][0] > 0.5
 
 
-def test_the_velocity_at_the_end_of_a_parabola_is_exact() -> None:
-    times = np.array([0.0, 0.1, 0.15, 0.3])
-    spots = np.outer(times, [1.0, 0.0, 0.0]) + np.outer(times**2, [0.0, 2.0, 0.0])
-    np.testing.assert_allclose(end_velocity(times, spots), [1.0, 1.2, 0.0])
-
-
 def test_what_does_not_fly_freely_to_a_hand_is_refused() -> None:
-    source = _source()
+    source = recorded("toss")
     sides = {hand.sensor: side for side, hand in source.hands.items()}
     (toss,) = source.throws
     spots = source.paths["mug"].translation.copy()
@@ -131,19 +105,7 @@ def test_what_does_not_fly_freely_to_a_hand_is_refused() -> None:
 def test_what_a_child_cannot_throw_is_refused_with_what_fails_and_what_would_do(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    scene, child = raised(_source().scene, "table", 0.5), body("child", _source())
+    scene, child = raised(recorded("toss").scene, "table", 0.5), body("child", recorded("toss"))
     monkeypatch.setattr(search, "STEPS_M", ())
     with pytest.raises(PlanError, match=r"cannot throw 'mug' .*misses by \d+ mm; .*lower would do"):
-        reachable(_source(), scene, child)
-
-
-def test_an_effort_is_refused_since_it_would_change_the_throw() -> None:
-    human = _source().human
-    with pytest.raises(PlanError, match=r"let go at 3\.\d+ s"):
-        regenerate_in_manner(
-            _source(),
-            human,
-            _source().scene,
-            own_style(_source()),
-            effort=read_effort("sudden=0.5"),
-        )
+        reachable(recorded("toss"), scene, child)
