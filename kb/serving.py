@@ -2,6 +2,7 @@
 
 import hmac
 import json
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from html import escape
@@ -25,7 +26,8 @@ from capar.model.errors import CaparError, UnknownNameError
 from kb.actionary import TIME_LIMIT_S, Actionary
 from kb.errors import LockedError, StoreError, TimeLimitError
 from kb.exchange import bring_in, export, read
-from kb.queries.questions import Question, as_json, check_known, question, questions
+from kb.queries.questions import as_json, check_known, questions
+from kb.queries.questions import question as question_of
 from kb.store.answers import Answer, Found
 from kb.store.updates import SCHEMA
 from ontology.namespace import XSD
@@ -189,11 +191,11 @@ class Service:
                 ]
             )
         given = {key: values[-1] for key, values in request.query.items()}
-        text = question(name).bind(given)
+        text = question_of(name).bind(given)
         with self._opened() as actionary:
             found = actionary.store.ask_within(text, seconds=self.seconds)
             if not found.rows:
-                check_known(actionary.store, question(name), given)
+                check_known(actionary.store, question_of(name), given)
         return Response(200, "application/json", as_json(found).encode())
 
     def _observation(self, request: Request, name: str) -> Response:
@@ -238,29 +240,23 @@ def chosen(accept: str, offered: Iterable[str]) -> str:
         RefusedError: It accepts none of them.
     """
     known = list(offered)
-    wanted = [_range(part) for part in (accept or "*/*").split(",")]
+    wanted = {}
+    for part in (accept or "*/*").split(","):
+        pattern, *parameters = (each.strip() for each in part.split(";"))
+        stated = re.search(r"(?:^|;)\s*q\s*=\s*([\d.]+|[^;]*)", ";".join(parameters))
+        try:
+            wanted[pattern.lower()] = float(stated[1]) if stated else 1.0
+        except ValueError:
+            wanted[pattern.lower()] = 0.0
 
     def quality(media: str) -> float:
-        patterns = {"*/*", media, f"{media.partition('/')[0]}/*"}
-        return max((q for pattern, q in wanted if pattern in patterns), default=0.0)
+        patterns = ("*/*", media, f"{media.partition('/')[0]}/*")
+        return max((wanted.get(each, 0.0) for each in patterns), default=0.0)
 
     best = max(known, key=quality)
     if quality(best) <= 0.0:
         raise RefusedError(406, f"nothing here is {accept}; accept one of {', '.join(known)}")
     return best
-
-
-def _range(text: str) -> tuple[str, float]:
-    """A pattern of media types and its quality."""
-    pattern, *parameters = (part.strip() for part in text.split(";"))
-    for parameter in parameters:
-        name, _, value = parameter.partition("=")
-        if name.strip() == "q":
-            try:
-                return pattern.lower(), float(value)
-            except ValueError:
-                return pattern.lower(), 0.0
-    return pattern.lower(), 1.0
 
 
 def encoded(answer: Answer, accept: str) -> tuple[str, bytes]:
@@ -308,6 +304,17 @@ def description() -> Mapping[str, Any]:
     """The OpenAPI 3.1 document: the protocol's paths, and one for each named question."""
     text = _parameter("query", "query", "string", required=True)
     name = _parameter("name", "path", "string", required=True)
+    asked = {}
+    for question in questions().values():
+        taken = []
+        for each in question.parameters:
+            kind = "number" if each.kind == "number" else "string"
+            one = _parameter(each.name, "query", kind, required=each.required)
+            one["description"] = each.meaning
+            if each.default:
+                one["schema"]["default"] = each.default
+            taken.append(one)
+        asked[f"/questions/{question.name}"] = {"get": _operation(question.text, *taken)}
     writes = _operation("Add RDF; it is checked first, and needs a bearer token.")
     return {
         "openapi": "3.1.0",
@@ -318,7 +325,7 @@ def description() -> Mapping[str, Any]:
                 "post": _operation("A SPARQL 1.1 query as the body, or as a form's field query."),
             },
             "/questions": {"get": _operation("The named questions with their parameters.")},
-            **{f"/questions/{each.name}": _question_path(each) for each in questions().values()},
+            **asked,
             "/observations": {"get": _operation("What is observed.")},
             "/observations/{name}": {
                 "get": _operation("One observation with all that it mentions, as RDF.", name)
@@ -327,18 +334,6 @@ def description() -> Mapping[str, Any]:
         },
         "components": {"securitySchemes": {"token": {"type": "http", "scheme": "bearer"}}},
     }
-
-
-def _question_path(asked: Question) -> Mapping[str, Any]:
-    taken = []
-    for each in asked.parameters:
-        kind = "number" if each.kind == "number" else "string"
-        one = _parameter(each.name, "query", kind, required=each.required)
-        one["description"] = each.meaning
-        if each.default:
-            one["schema"]["default"] = each.default
-        taken.append(one)
-    return {"get": _operation(asked.text, *taken)}
 
 
 def _operation(summary: str, *parameters: Mapping[str, Any]) -> dict[str, Any]:

@@ -58,13 +58,9 @@ class Scene:
     """Further properties of some facts, by fact."""
 
 
+@cache
 def _form(kind: Any) -> tuple[NamedNode, dict[str, NamedNode]]:
     """The class of a kind of fact, and its properties by field; of samples those with names."""
-    return _cached_form(kind)
-
-
-@cache
-def _cached_form(kind: Any) -> tuple[NamedNode, dict[str, NamedNode]]:
     declared = kind.declaration
     cls, *predicates = (getattr(CAPAR, each) for each in declared.rdf)
     named = [each.name for each in fields(kind) if not declared.sampled or each.type is str]
@@ -222,8 +218,7 @@ def _decoded(kind: Any, said: Mapping[NamedNode, str]) -> Iterator[Fact]:
     for each in fields(kind):
         power = kind.declaration.powers.get(each.name, 0)
         text = texts[each.name]
-        is_number = each.type is int
-        values[each.name] = (
-            (round(float(text) * 10**-power) if power else int(text)) if is_number else text
-        )
+        values[each.name] = text
+        if each.type is int:
+            values[each.name] = round(float(text) * 10**-power) if power else int(text)
     yield kind(**values)

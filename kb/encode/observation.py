@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from capar.model.capture import Agent
     from capar.model.observation import (
         Border,
-        ForceStyle,
         JointAction,
         Observation,
         ObservedObject,
@@ -178,7 +177,12 @@ class _Encoder:
                 )
                 for index, each in enumerate(seen.notices)
             ],
-            CAPAR.calibration: self.calibration(),
+            # What was decided for the whole recording, thresholds included.
+            CAPAR.calibration: Literal(
+                json.dumps(document(seen.calibration), separators=(",", ":")), datatype=JSON
+            )
+            if seen.calibration
+            else None,
         }
         for each in seen.relations:
             node, other = (
@@ -204,13 +208,6 @@ class _Encoder:
     def performer(self, ee: str) -> NamedNode:
         """Whose end-effector it is."""
         return self.agents[self.seen.performer(ee)]
-
-    def calibration(self) -> Literal | None:
-        """What was decided for the whole recording, thresholds included, as JSON."""
-        if self.seen.calibration is None:
-            return None
-        text = json.dumps(document(self.seen.calibration), separators=(",", ":"))
-        return Literal(text, datatype=JSON)
 
     def capture(self) -> NamedNode:
         """The capture with the files that it was read from."""
@@ -272,11 +269,21 @@ class _Encoder:
     def object(self, seen: "ObservedObject") -> NamedNode:
         """A tag object with its site, and the states in which it began to move alone."""
         node = names.part(self.about, "object", seen.name)
-        states = [
-            self.out.add(names.part(node, "state", number), (CAPAR.StateSpace,), self.state(force))
-            for number, force in enumerate(self.seen.forces)
-            if force.object == seen.name
-        ]
+        states = []
+        for number, force in enumerate(self.seen.forces):
+            if force.object == seen.name:  # began to move on alone (thesis Fig 4.13)
+                thesis = self.seen.profile == THESIS
+                damping = force.thesis_damping if thesis else force.damping_per_s
+                bounce = force.bounce if force.restitution is None else force.restitution
+                state: PropertyValues = {
+                    CAPAR.position: statements.vector(force.position_m),
+                    CAPAR.velocity: statements.vector(force.velocity_mps),
+                    # The damping along z is taken for zero (thesis 3.4.3.4).
+                    CAPAR.dampingForce: statements.vector((*damping, 0.0)) if damping else None,
+                    CAPAR.restitution: bounce,
+                }
+                own = names.part(node, "state", number)
+                states.append(self.out.add(own, (CAPAR.StateSpace,), state))
         site: PropertyValues = {
             CAPAR.position: statements.vector(seen.position_m),
             CAPAR.orientation: statements.vector(seen.orientation),
@@ -292,18 +299,6 @@ class _Encoder:
             CAPAR.state: states,
         }
         return self.out.add(node, (CAPAR.TagObject,), properties)
-
-    def state(self, force: "ForceStyle") -> PropertyValues:
-        """The state in which a thing began to move on alone (thesis Fig 4.13)."""
-        thesis = self.seen.profile == THESIS
-        damping = force.thesis_damping if thesis else force.damping_per_s
-        return {
-            CAPAR.position: statements.vector(force.position_m),
-            CAPAR.velocity: statements.vector(force.velocity_mps),
-            # The damping along z is taken for zero (thesis 3.4.3.4).
-            CAPAR.dampingForce: statements.vector((*damping, 0.0)) if damping else None,
-            CAPAR.restitution: force.bounce if force.restitution is None else force.restitution,
-        }
 
     def segment(self, seen: "Segment", count: int, rules: Mapping[str, NamedNode]) -> NamedNode:
         """A segment of a link of so many."""
@@ -361,19 +356,18 @@ class _Encoder:
 
     def borders(self, of: NamedNode, where: str, borders: "tuple[Border, ...]") -> list[NamedNode]:
         """What happens at the begin or at the end of a segment."""
-        return [
-            self.out.add(
-                names.part(of, where, index),
-                (CAPAR.Border,),
-                {
-                    CAPAR.index: index,
-                    CAPAR.borderKind: border_kind(each.kind),
-                    CAPAR.body: self.bodies(each.body) if each.body else None,
-                    CAPAR.other: self.bodies(each.other) if each.other else None,
-                },
-            )
-            for index, each in enumerate(borders)
-        ]
+        nodes = []
+        for index, each in enumerate(borders):
+            if each.kind not in BORDER_KINDS:
+                raise UnknownNameError("kind of border", each.kind, BORDER_KINDS)
+            properties: PropertyValues = {
+                CAPAR.index: index,
+                CAPAR.borderKind: BORDER_KINDS[each.kind],
+                CAPAR.body: self.bodies(each.body) if each.body else None,
+                CAPAR.other: self.bodies(each.other) if each.other else None,
+            }
+            nodes.append(self.out.add(names.part(of, where, index), (CAPAR.Border,), properties))
+        return nodes
 
     def joint_actions(self) -> list[NamedNode]:
         """What several end-effectors did with one object as one action, in order of time."""
@@ -492,17 +486,6 @@ def _interval(seen: "Segment | JointAction") -> PropertyValues:
         CAPAR.end: float(seen.end_s),
         CAPAR.duration: float(seen.end_s - seen.start_s),
     }
-
-
-def border_kind(word: str) -> NamedNode:
-    """What happens at a border, by its word.
-
-    Raises:
-        UnknownNameError: Nothing of that name may happen there.
-    """
-    if word not in BORDER_KINDS:
-        raise UnknownNameError("kind of border", word, BORDER_KINDS)
-    return BORDER_KINDS[word]
 
 
 def run(observation: "Observation") -> list[Quad]:

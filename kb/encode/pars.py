@@ -12,7 +12,6 @@ from capar.model.par import (
     Call,
     ComplexPar,
     CoreSemantics,
-    Ipar,
     LinkSteps,
     Motion,
     Preparation,
@@ -26,7 +25,7 @@ from ontology import CAPAR
 from ontology.namespace import ALLEN
 
 if TYPE_CHECKING:
-    from capar.model.observation import Observation, Segment
+    from capar.model.observation import Observation
 
 MOTIONS = {
     Motion.NONE: CAPAR.NoMotion,
@@ -89,25 +88,23 @@ def ipars(
         of = known.get((value.upar, value.core.constraint.features))
         agent = agents.get(value.agent, agents[observation.agent.name])
         seen = [objects[each] for each in value.objects if each in objects]
-        _ipar(out, value, segment, {CAPAR.instanceOf: of, CAPAR.agent: agent, CAPAR.object: seen})
-
-
-def _ipar(out: Statements, value: Ipar, segment: "Segment", nodes: PropertyValues) -> None:
-    node = names.part(out.about, "ipar", segment.ee, segment.index)
-    properties: PropertyValues = {
-        **nodes,
-        CAPAR.name: value.upar,
-        CAPAR.ofAction: action(out, value.upar),
-        **same(value, "ee objects posture"),
-        CAPAR.start: float(value.start_s),
-        CAPAR.core: _core(out, out.add, node, value.core),
-        CAPAR.preparation: _preparation(out, out.add, node, value.preparation),
-        CAPAR.postAssertion: conditions(out, value.post_assertions),
-        CAPAR.parentName: value.parent,
-        DERIVED: segment_node(out.about, segment.ee, segment.index),
-        GENERATED: out.about,
-    }
-    out.add(node, (CAPAR.Ipar,), properties)
+        node = names.part(out.about, "ipar", segment.ee, segment.index)
+        properties: PropertyValues = {
+            CAPAR.instanceOf: of,
+            CAPAR.agent: agent,
+            CAPAR.object: seen,
+            CAPAR.name: value.upar,
+            CAPAR.ofAction: action(out, value.upar),
+            **same(value, "ee objects posture"),
+            CAPAR.start: float(value.start_s),
+            CAPAR.core: _core(out, out.add, node, value.core),
+            CAPAR.preparation: _preparation(out, out.add, node, value.preparation),
+            CAPAR.postAssertion: conditions(out, value.post_assertions),
+            CAPAR.parentName: value.parent,
+            DERIVED: segment_node(out.about, segment.ee, segment.index),
+            GENERATED: out.about,
+        }
+        out.add(node, (CAPAR.Ipar,), properties)
 
 
 def _preparation(
@@ -214,6 +211,10 @@ def _enact(out: Statements, observation: "Observation", node: NamedNode, name: s
         own.setdefault(NamedNode(ALLEN[relation.relation]), []).append(nodes[relation.second])
     ees = [each.ee for each in observation.links]
     for ee, index, step in every:
+        # A common step stands for a segment of each link.
+        whose = ees if ee == COMMON else [ee] * len(step.segments)
+        fits = len(whose) == len(step.segments)
+        stands_for = list(zip(whose, step.segments, strict=True)) if fits else []
         properties: PropertyValues = {
             LABEL: f"{ee} {index}: {step.action}",
             CAPAR.realises: names.part(node, "step", ee, index),
@@ -225,7 +226,7 @@ def _enact(out: Statements, observation: "Observation", node: NamedNode, name: s
             CAPAR.share: float(step.share),
             CAPAR.begin: float(step.begin),
             CAPAR.segmentNumbers: " ".join(map(str, step.segments)),
-            CAPAR.standsFor: _segments(out, ee, step, ees),
+            CAPAR.standsFor: [segment_node(out.about, one, at) for one, at in stands_for],
             CAPAR.nextStep: nodes.get((ee, index + 1)),
             GENERATED: out.about,
             **related.get((ee, index), {}),
@@ -240,14 +241,3 @@ def _enact(out: Statements, observation: "Observation", node: NamedNode, name: s
         CAPAR.duration: float(value.duration_s),
     }
     out.add(out.about, (), whole)
-
-
-def _segments(out: Statements, ee: str, step: Step, ees: list[str]) -> list[NamedNode]:
-    """The segments that a step stands for; a common step has one of each link."""
-    if ee != COMMON:
-        return [segment_node(out.about, ee, each) for each in step.segments]
-    if len(ees) != len(step.segments):
-        return []
-    return [
-        segment_node(out.about, one, each) for one, each in zip(ees, step.segments, strict=True)
-    ]

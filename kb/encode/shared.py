@@ -13,7 +13,7 @@ from ontology.namespace import PREFIXES, PROV
 
 if TYPE_CHECKING:
     from capar.model.observation import ObservedObject
-    from capar.model.par import NamingRule, Threshold
+    from capar.model.par import NamingRule
 
 USED = NamedNode(PROV + "used")
 DERIVED = NamedNode(PROV + "wasDerivedFrom")
@@ -107,14 +107,13 @@ def rule(out: Statements, value: "NamingRule") -> NamedNode:
             CAPAR.filePath: value.file,
             CAPAR.sha256: value.sha256,
             CAPAR.ruleText: value.text,
-            CAPAR.threshold: [_threshold(out, each) for each in value.thresholds],
+            CAPAR.threshold: [
+                out.share(
+                    names.shared("threshold", each.name, each.value),
+                    (CAPAR.Threshold,),
+                    {LABEL: each.name, CAPAR.name: each.name, CAPAR.thresholdValue: each.value},
+                )
+                for each in value.thresholds
+            ],
         },
-    )
-
-
-def _threshold(out: Statements, value: "Threshold") -> NamedNode:
-    return out.share(
-        names.shared("threshold", value.name, value.value),
-        (CAPAR.Threshold,),
-        {LABEL: value.name, CAPAR.name: value.name, CAPAR.thresholdValue: value.value},
     )

@@ -39,7 +39,7 @@ def replace_all(store: Store, replacements: Iterable[tuple["Observation", str]])
 def source_files(store: Store, name: str) -> tuple[tuple[str, str], ...]:
     """Path and SHA-256 of each file that an observation's capture was read from."""
     rows = store.ask(stored("source_files", graph=str(names.observation(name)))).texts()
-    return tuple((path, digest) for path, digest in rows)
+    return tuple((row[0], row[1]) for row in rows)
 
 
 @dataclass(frozen=True, slots=True, order=True)
