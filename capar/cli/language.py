@@ -280,13 +280,12 @@ class Format(StrEnum):
     HTML = "html"
     CSV = "csv"
     JSON = "json"
-    SVG = "svg"
 
 
 @report.command()
 def linguistics(
     actionary: options.Place = None,
-    form: Annotated[Format, Option("--format", help="svg is the drawing alone.")] = Format.TEXT,
+    form: Annotated[Format, Option("--format", help="How it is written.")] = Format.TEXT,
     rules: options.Rules = None,
     output: options.OutputFile = None,
     cases: Annotated[Path | None, Option(help="A folder of cases as proof.")] = None,
