@@ -478,11 +478,7 @@ def _pose_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
 def _loss(
     body: Sensor | TagObject, lost: list[tuple[int, int]], times: Series, *, fixed: bool
 ) -> Notice:
-    """How often a body was lost for long, and when at most; without times if it was throughout.
-
-    With times, also for how long in all [s], of how much [s]; and how far it was then [m] from
-    where it was before, where that is known.
-    """
+    """How often a body was lost for long, and when at most; without times if it was throughout."""
     first, last = max(lost, key=lambda gap: gap[1] - gap[0])
     if last - first + 1 == len(times):
         return notice(LOSS, body.name, times=len(lost), fixed=fixed)

@@ -153,10 +153,7 @@ def _spread(along: int, across: int) -> tuple[np.ndarray, np.ndarray]:
 def _faced(
     own: Places, others: Places, some: Int[np.ndarray, "near"], nearest: Int[np.ndarray, "near"]
 ) -> Vector:
-    """The sum of a patch's normals by area, as far as each faces the nearest of the others.
-
-    Of an open sheet nobody knows which side is out: there what faces it looks towards it.
-    """
+    """The sum of a patch's normals by area, as far as each faces the nearest of the others."""
     if not own.outward:
         return np.zeros(3)
     normals = own.normals[some]
@@ -197,10 +194,7 @@ def contact_normal(
 def _patch_normal(
     body: BodyGeometry, other: BodyGeometry, frame: int, depth_m: float
 ) -> Vector | None:
-    """The mean normal of the patch where two surfaces meet; None where either has no shape.
-
-    The other way about it is the opposite one, to the last digit.
-    """
+    """The mean normal of the patch where two surfaces meet; None where either has no shape."""
     if body.shape is None or other.shape is None:
         return None
     one, two = (
@@ -258,10 +252,7 @@ def _placed(
 
 
 def _between_outlines(body: BodyGeometry, other: BodyGeometry, frame: int) -> Vector:
-    """The direction along which two bodies' outermost points are furthest apart.
-
-    Sought among the world's and both bodies' axes and the line that joins their middles.
-    """
+    """The direction along which two bodies' outermost points are furthest apart."""
     offset = body.middles[frame] - other.middles[frame]
     length = float(np.linalg.norm(offset))
     axes = np.concatenate([np.eye(3), body.turn(frame).T, other.turn(frame).T])

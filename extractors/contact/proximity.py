@@ -80,11 +80,7 @@ def _touch(
     place: Vector,
     distance_m: float,
 ) -> tuple[Vector | None, float]:
-    """A point of the second within the distance, and how far it may move [m] before it is not.
-
-    If they are farther apart: none, and how far any point may move without touching. The point of
-    triangles that only lie on each other is NaN, and decides no other pose.
-    """
+    """A point of the second within the distance, and how far it may move [m] before it is not."""
     one, two = fcl.CollisionObject(first.tree), fcl.CollisionObject(second.tree)
     two.setTransform(fcl.Transform(turn, place))
     result = fcl.CollisionResult()

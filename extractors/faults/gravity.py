@@ -114,10 +114,7 @@ def _flight(
 
 
 def _parabolic(places: Places, noise_m: float, thresholds: Thresholds) -> Iterator[Interval]:
-    """Stretches of a path through which its acceleration is the same.
-
-    Of two that overlap, the one found by a wider window counts, or else the longer one.
-    """
+    """Stretches of a path through which its acceleration is the same."""
     taken = np.zeros(len(places), dtype=bool)
     for width in reversed([each for each in WINDOWS if each <= len(places)]):
         bend, fits = _bends(places, width, noise_m, thresholds)

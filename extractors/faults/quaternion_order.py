@@ -106,10 +106,7 @@ def _sampled(stream: Stream, shift: int, thresholds: Thresholds) -> _Sampled:
 def _votes(
     body: _Sampled, other: _Sampled, unit_m: float, thresholds: Thresholds
 ) -> tuple[int, tuple[float, ...]]:
-    """Stretches that support the declared order, and how far bodies stray in the others [m].
-
-    Only those count in which the direction between the two turns in the world, at a steady length.
-    """
+    """Stretches that support the declared order, and how far bodies stray in the others [m]."""
     if not np.array_equal(body.times, other.times):
         return 0, ()
     between = other.positions - body.positions

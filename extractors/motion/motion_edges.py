@@ -277,10 +277,7 @@ def _carried(
 
 
 def _mount(body: Poses, other: Poses, frames: Frames, held: Ways) -> tuple[Vector, Quaternion]:
-    """A body's origin [m] and orientation in the frame of another on which it sits.
-
-    The mean over frames by how much it is held in each; NaN where it is never known.
-    """
+    """A body's origin [m] and orientation in the frame of another on which it sits."""
     places, turns = _at(body.smooth, frames)
     origins, bearings = _at(other.smooth, frames)
     known = ~np.isnan(places[:, 0] + origins[:, 0]) & (held > 0.0)
@@ -439,11 +436,7 @@ def _onset(
 def _well_beyond(
     poses: Poses, stay: RestPose, motion: tuple[int, int], near: Floor, floor: Floor
 ) -> int:
-    """The frame, from the first of a motion to the last, at which it is clear how it grew.
-
-    It is the last one before the object is lost, and the farthest if it never goes well beyond, or
-    comes most of the way back before that: a stroke to and fro grows from the place as well.
-    """
+    """The frame, from the first of a motion to the last, at which it is clear how it grew."""
     step = 1 if motion[0] <= motion[1] else -1
     frames = np.arange(motion[0], motion[1] + step, step)
     reach = min(floor.position_m / near.position_m, floor.rotation_rad / near.rotation_rad)
@@ -529,16 +522,7 @@ def seat(
 def _settled(
     height: Series, outside: Float[np.ndarray, "others"], least: float, most: int, lies: int
 ) -> int:
-    """How many frames pass before it is down, from the first on, as far as it was not lost.
-
-    It is down where it first is for so many frames (``lies``) no more than a hair above its lowest,
-    or for as long as the contact lasts: the level is that of these frames, however long it lies.
-
-    People stop smoothly: the height over what bears it shrinks with the cube of time (minimum jerk;
-    Flash and Hogan 1985), so it comes down later than it passes a hair's width, by at most so many
-    frames. Where noise makes a hair as wide as the tolerance of contact, the height is followed
-    beyond the contact.
-    """
+    """How many frames pass before it is down, from the first on, as far as it was not lost."""
     lost = np.flatnonzero(np.isnan(height))
     height = height[: lost[0]] if lost.size else height
     if not height.size:

@@ -98,10 +98,7 @@ class Pair:
         planes: Float[np.ndarray, "planes 4"],
         frames: Int[np.ndarray, "some"],
     ) -> Float[np.ndarray, "some points"]:
-        """How far each of the body's points is outside the other's hull, negative inside [m].
-
-        Infinite outside the other's box, where no plane needs to be asked.
-        """
+        """How far each of the body's points is outside the other's hull, negative inside [m]."""
         back = self.other.turns_at(frames)
         turns = np.swapaxes(self.body.turns_at(frames), 1, 2) @ back
         offset = (self.body.middles[frames] - self.other.middles[frames])[:, None] @ back
@@ -336,11 +333,7 @@ def _gap(
     calibration: Calibration,
     reach_m: float,
 ) -> float:
-    """How much farther apart than where they touch two bodies are in a stretch [m].
-
-    Where their boxes are farther apart than the reach, the distance of the boxes is told, which is
-    no more than that of the surfaces.
-    """
+    """How much farther apart than where they touch two bodies are in a stretch [m]."""
     some = np.unique(np.linspace(*span, SAMPLES).round().astype(int))
     points, touch_m, pivots = TouchPoints(), 0.0, other.shape is None or thing.shape is None
     for first, second in ((other.name, thing.name), (thing.name, other.name)):

@@ -209,11 +209,7 @@ def guide_of(
 
 
 def _fit(body: BodyGeometry, floor: Floor, thresholds: Thresholds) -> GuideFit | None:
-    """The line that the body never leaves, if it moves far enough to tell.
-
-    On a hinge or a rail its middle stays in a plane: where the mean square from the best plane is
-    more than the floor's, it does not.
-    """
+    """The line that the body never leaves, if it moves far enough to tell."""
     middles = body.middles[_known(body)]
     if len(middles):
         offset = middles - middles.mean(axis=0)
@@ -239,11 +235,7 @@ def _closed(
     ends: tuple[int, int],
     thresholds: Thresholds,
 ) -> tuple[bool, float] | None:
-    """Whether the body is closed at the first end of its range, and how closed it is [1].
-
-    None where it is closed at neither end or at both, or where the line is not where a guide of
-    that base would be.
-    """
+    """Whether the body is closed at the first end of its range, and how closed it is [1]."""
     shares = [
         _closed_share(body, base, fit, end, outward, thresholds)
         for end, outward in zip(ends, (-1.0, 1.0), strict=True)
@@ -309,11 +301,7 @@ def _at_own_edge(body: BodyGeometry, fit: GuideFit, frame: int, thresholds: Thre
 def _confined(
     body: BodyGeometry, base: BodyGeometry, axis: Vector, frame: int, thresholds: Thresholds
 ) -> bool:
-    """Whether another's surface stands close by on both sides of a body, or fills its place.
-
-    The sides are those to which it could go level with the ground, across the axis; of an upright
-    axis either of two directions.
-    """
+    """Whether another's surface stands close by on both sides of a body, or fills its place."""
     sides = [np.cross(axis, UP)]
     if np.linalg.norm(sides[0]) < thresholds.steep:
         one = np.cross(axis, [1.0, 0.0, 0.0])
@@ -340,10 +328,7 @@ def _sliding_door(
     still_m: float,
     thresholds: Thresholds,
 ) -> tuple[bool, float] | None:
-    """Whether a door on a rail closes an opening at the first end, and how much is flush [1].
-
-    None if it is no sliding door. ``still_m``: how much nearer to the edge is nearer [m].
-    """
+    """Whether a door on a rail closes an opening at the first end, and how much is flush [1]."""
     side = np.cross(fit.axis, UP)
     length = float(np.linalg.norm(side))
     if length < thresholds.steep:
@@ -403,10 +388,7 @@ def inside_share(body: BodyGeometry, base: BodyGeometry, frame: int) -> float:
 def _flush_share(
     body: BodyGeometry, base: BodyGeometry, frame: int, way: Vector, thresholds: Thresholds
 ) -> float:
-    """Share of a body that is flush against another's convex hull, seen along a direction [1].
-
-    ``way``: unit direction in the world in which the body closes.
-    """
+    """Share of a body that is flush against another's convex hull, seen along a direction [1]."""
     points = _points(body, frame)
     front = _through(points, way, body, frame)[1]
     enters, leaves = _through(points, way, base, frame)
@@ -424,10 +406,7 @@ def _covers_a_hollow(
 def _borne_from_below(
     body: BodyGeometry, others: Iterable[BodyGeometry], frame: int, thresholds: Thresholds
 ) -> bool:
-    """Whether a true surface of another body is so near below a body that it may lie on it.
-
-    What of the body is within the other's hull, as noise has it, lies next to that and not on it.
-    """
+    """Whether a true surface of another body is so near below a body that it may lie on it."""
     for other in others:
         near = _ahead(body, other, frame, -UP) <= thresholds.tolerance_most_m
         if other.planes is not None:
@@ -475,10 +454,7 @@ def _outside(points: Points, base: BodyGeometry, frame: int) -> Float[np.ndarray
 def _through(
     points: Points, way: Vector, body: BodyGeometry, frame: int
 ) -> tuple[Float[np.ndarray, "points"], Float[np.ndarray, "points"]]:
-    """Where lines from points along a direction enter and leave a body's hull [m].
-
-    The line misses the hull where it would enter it after it leaves.
-    """
+    """Where lines from points along a direction enter and leave a body's hull [m]."""
     assert body.planes is not None
     local = (points - body.middles[frame]) @ body.turn(frame)
     height = local @ body.planes[:, :3].T + body.planes[:, 3]
@@ -494,10 +470,7 @@ def _through(
 def _ahead(
     body: BodyGeometry, base: BodyGeometry, frame: int, way: Vector
 ) -> Float[np.ndarray, "points"]:
-    """How far beyond a body's front another's true surface is, at each of its points [m].
-
-    Infinite where there is none.
-    """
+    """How far beyond a body's front another's true surface is, at each of its points [m]."""
     points = _points(body, frame)
     out = np.full(len(points), np.inf)
     if base.shape is not None:

@@ -268,18 +268,11 @@ def seek_rooms(shapes: Iterable[Shape], thresholds: Thresholds) -> None:
         has_room(shape, thresholds)
 
 
-def pocket_m(shape: Shape) -> float:
-    """The largest distance of a body's convex hull from its own surface [m].
-
-    Of a bowl it is how far the middle of its opening is from its wall or bottom; of a box or a loaf
-    nearly zero. It is known to a fortieth of the body's size. Zero for what has no volume.
-    """
-    found = once(_POCKETS, shape, _pocket)
-    return 0.0 if found is None else found[1]
-
-
 def _pocket(shape: Shape) -> _Pocket | None:
-    """Where the hull is furthest from the surface, half as far inside of it; and how far [m]."""
+    """Where the hull is furthest from the surface, half as far inside of it; and how far [m].
+
+    Of a bowl it is how far the middle of its opening is from its wall; of a box nearly zero.
+    """
     vertices = np.asarray(shape.vertices)
     try:
         hull = ConvexHull(vertices).simplices

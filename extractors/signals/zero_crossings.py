@@ -104,10 +104,7 @@ def rests(speed_mps: Series, times: Series, *, noise_mps: float, thresholds: Thr
 
 
 def _to_the_ends(slow: Holds, speed_mps: Series, times: Series, thresholds: Thresholds) -> Holds:
-    """Slowness that begins or ends near the end of a known stretch reaches it.
-
-    A filter knows a stretch's end from one side only, and makes more of the noise there.
-    """
+    """Slowness that begins or ends near the end of a known stretch reaches it."""
     out = slow.copy()
     reach = int(0.5 * thresholds.rest_minimum_s / time_step(times)) + 1
     for first, last in geometry.runs(~np.isnan(speed_mps)):

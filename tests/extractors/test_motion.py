@@ -9,7 +9,7 @@ import trimesh
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
-from measured_bodies import box, cup, eased, shape, stream
+from measured_bodies import box, eased, stream
 from motions import PERFORMERS, Performer, shapes
 from scipy.spatial.transform import Rotation
 
@@ -43,7 +43,6 @@ from extractors.motion.phases import (
     rolling,
     turns_of_height,
 )
-from extractors.relations.places import pocket_m
 from extractors.signals.filters import fill_gaps, gains, long_gaps, noise_at_rest, speed
 from extractors.thresholds import Thresholds
 
@@ -94,14 +93,6 @@ def test_crossings_move_with_the_motion_when_it_is_shifted_in_time(shift: int) -
     plain = crossings(reach(100.0))[1:-1]
     later = crossings(reach(100.0, shift_s=shift / 100.0))[1:-1]
     assert np.abs(np.array(later) - np.array(plain) - shift).max() <= 1
-
-
-@given(st.floats(0.8, 2.0))
-@settings(max_examples=10, deadline=None)
-def test_the_fastest_frame_scales_with_the_motion(scale: float) -> None:
-    found = crossings(reach(100.0, scale=scale))
-    assert len(found) == 5
-    assert abs(found[2] - 150.0 * scale) <= 2
 
 
 @given(st.integers(0, 1000))
@@ -838,28 +829,3 @@ def test_what_is_not_much_longer_than_wide_has_no_length_to_go_along(
     sponge = swung(box(0.08 * ratio, 0.08, 0.03), np.array([1.0, 0.0, 0.0]), any_turn(seed))
     assert long_axis(sponge, LIMITS) is None
     assert lengthwise(sponge, (SPAN,), LIMITS) == ()
-
-
-def test_the_axis_is_the_bodys_own_whichever_way_its_mesh_is_turned() -> None:
-    turn = any_turn(3)
-    tilted = trimesh.creation.box((0.4, 0.03, 0.02))
-    tilted.apply_transform(np.block([[turn.as_matrix(), np.zeros((3, 1))], [np.eye(4)[3:]]]))
-    axis = long_axis(swung(shape(tilted), np.array([1.0, 0.0, 0.0]), any_turn(4)), LIMITS)
-    assert axis is not None
-    assert abs(axis @ turn.apply([1.0, 0.0, 0.0])) > 0.999
-
-
-@given(st.floats(0.05, 0.4), st.floats(0.05, 0.4), st.floats(0.02, 0.3), st.integers(0, 1000))
-@settings(max_examples=15, deadline=None)
-def test_nothing_fits_in_a_box(x: float, y: float, z: float, seed: int) -> None:
-    turn = np.eye(4)
-    turn[:3, :3] = any_turn(seed).as_matrix()
-    form = trimesh.creation.box((x, y, z))
-    form.apply_transform(turn)
-    assert pocket_m(shape(form)) <= LIMITS.pocket_share * max(x, y, z)
-
-
-@pytest.mark.parametrize(("radius_m", "height_m"), [(0.04, 0.1), (0.12, 0.08), (0.11, 0.12)])
-def test_something_fits_in_a_cup_a_bowl_and_a_pot(radius_m: float, height_m: float) -> None:
-    form = cup(radius_m, height_m)
-    assert pocket_m(form) > 2.0 * LIMITS.pocket_share * max(2.0 * radius_m, height_m) / 1.2

@@ -10,7 +10,7 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from measured_bodies import ball, box, cup, eased, hand, shape, still, stream
+from measured_bodies import ball, box, cup, eased, hand, shape, stream
 from motions import PERFORMERS, TALL_MAN, Performer, shapes, standing
 from motions.doors import (
     case,
@@ -21,7 +21,6 @@ from motions.doors import (
 )
 from motions.paths import minimum_jerk
 from motions.trials import Trial
-from motions.uses import USES
 from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
@@ -31,9 +30,8 @@ from capar.pipelines.observation import observe
 from extractors.bodies.bodies import BodyGeometry, from_trunk, geometry_of
 from extractors.contact.normals import contact_normal
 from extractors.measure import measure
-from extractors.motion.impacts import closing_speed, falls
-from extractors.motion.motion_edges import motion_edges
-from extractors.motion.object_motion import Floor, moving, rest_poses, resting
+from extractors.motion.impacts import falls
+from extractors.motion.object_motion import Floor
 from extractors.motion.phases import (
     leaning,
     level_turns,
@@ -216,12 +214,6 @@ def test_what_is_dropped_falls_and_what_is_carried_does_not() -> None:
     assert falls(body(along_x(0.0, 1.0)), LIMITS) == ()
 
 
-def test_the_closing_speed_is_that_of_the_approach() -> None:
-    thing, wall = body(along_x(0.0, 1.0)), body(np.array([2.0, 0.0, 0.0]))
-    assert closing_speed(thing, wall, 200) == pytest.approx(0.5, abs=0.01)
-    assert closing_speed(thing, wall, 0) == 0.0
-
-
 @pytest.mark.parametrize(
     ("place", "normal"),
     [((0.0, 0.0, 0.0), (0, 0, 1)), ((0.549, 0.0, -0.08), (1, 0, 0)), ((0, 0, -0.14), (0, 0, -1))],
@@ -278,25 +270,6 @@ def test_who_goes_through_leaves_at_the_opposite_side() -> None:
     thing, tunnel = body(along_x(-1.0, 1.0)), body(np.zeros(3), shape=shapes.box(0.4, 0.4, 0.4))
     assert sides(thing, tunnel, np.array([150, 250])) == "opposite"
     assert sides(thing, tunnel, np.array([150, 190])) == "other"
-
-
-def test_a_hand_rests_where_it_does_not_move() -> None:
-    spans = resting(body(along_x(0.0, 1.0)).poses, LIMITS)
-    assert [each[0] for each in spans] == pytest.approx([0, 300], abs=10)
-    assert [each[1] for each in spans] == pytest.approx([100, 399], abs=10)
-
-
-def test_a_motion_begins_before_it_is_beyond_its_floor() -> None:
-    share = np.clip((TIMES - 1.0) / 2.0, 0.0, 1.0)[:, None]
-    places = (share**3 * (10.0 - 15.0 * share + 6.0 * share**2)) * np.array([0.5, 0.0, 0.0])
-    where = body(places).poses
-    floor = Floor(LIMITS.motion_floor_m, LIMITS.motion_floor_rad)
-    rests = rest_poses(where, floor, LIMITS)
-    ((first, last),) = moving(where, rests, floor, LIMITS)
-    begin, end = motion_edges(where, (first, last), rests, floor, LIMITS)
-    assert begin < first - 10
-    assert last + 10 < end
-    assert begin == pytest.approx(100, abs=3)
 
 
 def test_a_rod_that_stands_in_a_bowl_dips_into_it_and_one_beside_or_above_it_does_not() -> None:
@@ -429,16 +402,6 @@ def test_the_weight_is_whole_while_the_other_foot_is_off_the_floor() -> None:
     assert [each[0] for each in facts["right_foot"]] == ["part", "none", "none", "part"]
 
 
-def test_without_a_trunk_two_feet_on_the_floor_bear_nobody_knows_how_much() -> None:
-    capture = motions.stand_on_one_leg(TALL_MAN).capture
-    feet = replace(capture, sensors=tuple(each for each in capture.sensors if each.side != "none"))
-    facts = bears(feet)
-    assert [each[0] for each in facts["left_foot"]] == ["whole"]
-    assert "right_foot" not in facts
-    names = [each.name for each in observe(feet).segments if each.ee == "right_foot"]
-    assert names == ["Stand", "Withdraw", "Rest", "Step", "Stand"]
-
-
 def test_one_foot_alone_says_nothing_and_a_pelvis_looks_at_nothing() -> None:
     capture = motions.stand_on_one_leg(TALL_MAN).capture
     one = replace(capture, sensors=tuple(e for e in capture.sensors if e.name != "right_foot"))
@@ -539,15 +502,6 @@ def test_a_block_that_a_rake_draws_along_rides_not_though_it_is_within_the_outli
     rake = thing("rake", shape(trimesh.util.concatenate([shaft, teeth])), way)
     block = thing("block", box(0.06, 0.06, 0.05), way + np.array([0.149, 0.0, -0.06]))
     assert not rides(block, rake, (0, FRAMES - 1), [MOTION], LIMITS)
-
-
-@pytest.mark.parametrize("touching", [(0, 40), (160, 199)])
-def test_nothing_rides_while_its_bearer_stands(touching: tuple[int, int]) -> None:
-    load = geometry_of(
-        TagObject("cup", TagType.MOBILE, still((0.0, 0.0, 0.051), FRAMES), box(0.06, 0.06, 0.08)),
-        LIMITS,
-    )
-    assert not rides(load, tray((0.3, 0.0, 0.0)), touching, [MOTION], LIMITS)
 
 
 @pytest.mark.parametrize("touching", [(0, MOTION[0]), (MOTION[1], FRAMES - 1)])
@@ -802,11 +756,6 @@ def test_what_slides_turns_or_tips_on_a_table_is_on_no_guide() -> None:
         assert guide_of(each, [table], FLOOR, LIMITS) is None
 
 
-@pytest.mark.parametrize("act", [*USES, motions.drink_from_mug], ids=lambda each: each.__name__)
-def test_nothing_that_hands_use_has_a_guide(act: Callable[..., Trial]) -> None:
-    assert not measure(act(motions.WOMAN).capture).guides
-
-
 @pytest.mark.parametrize("noise_m", [0.0, 0.001])
 @pytest.mark.parametrize("act", [open_and_close_drawer, open_and_close_door, open_and_close_lid])
 def test_the_axis_is_kept_with_range_and_residual(
@@ -871,13 +820,6 @@ def test_it_does_not_depend_on_where_the_object_is_carried(way_m: float, angle: 
     carry = np.outer(share, [0.0, way_m, 0.3])
     assert len(found(0.15, carry=carry, turn=angle * share)) == 1
     assert found(0.0, carry=carry, turn=angle * share) == []
-
-
-def test_a_contact_of_a_few_frames_tells_nothing() -> None:
-    thing = TagObject("thing", TagType.MOBILE, stream(np.zeros((9, 3))), box(0.1, 0.1, 0.1))
-    palm = hand(np.outer(np.arange(9), [0.1, 0.0, 0.0]), ball(0.04))
-    figures = [geometry_of(each, LIMITS) for each in (palm, thing)]
-    assert list(shifts(*figures, (2, 5), LIMITS)) == []
 
 
 TRUNK_TIMES = np.arange(20) / 100.0
