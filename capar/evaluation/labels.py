@@ -5,7 +5,6 @@ import csv
 import io
 import json
 import math
-import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -459,15 +458,10 @@ def read_elan(path: Path) -> list[Annotation]:
     if root.tag != "ANNOTATION_DOCUMENT":
         raise FileError(path, f"holds <{root.tag}>.", remedy)
     file = _quietly(path, lambda: Eaf(str(path), suppress_version_warning=True), remedy)
-    decoded = text.decode("utf-8", "replace")
-    lines = {
-        match.group(1): decoded.count("\n", 0, match.start()) + 1
-        for match in re.finditer(r'ANNOTATION_ID="([^"]*)"', decoded)
-    }
     out: list[Annotation] = []
     for tier, (aligned, *_) in file.tiers.items():
         for name, (first, last, words, _) in aligned.items():
-            where = f"{path}:{lines[name]}" if name in lines else f"{path}: tier {tier!r}, {name}"
+            where = f"{path}: tier {tier!r}, {name}"
             times = [file.timeslots.get(each) for each in (first, last)]
             if None in times:
                 raise FileError(
@@ -491,21 +485,13 @@ def read_praat(path: Path) -> list[Annotation]:
     codec = next((name for bom, name in BOMS if content.startswith(bom)), "utf-8")
     remedy = "Give a Praat TextGrid, as Praat saves it."
     file = _quietly(path, lambda: TextGrid(str(path), codec=codec), remedy)
-    lines: dict[tuple[str, int], int] = {}
-    inside = ""
-    for number, line in enumerate(content.decode(codec, "replace").splitlines(), 1):
-        if match := re.match(r'\s*name = "(.*)"\s*$', line):
-            inside = match.group(1).replace('""', '"')
-        elif match := re.match(r"\s*intervals \[(\d+)\]", line):
-            lines[inside, int(match.group(1))] = number
     out: list[Annotation] = []
     for tier in file.get_tiers():
         if tier.tier_type == "IntervalTier":
             for index, (start, end, text) in enumerate(tier.get_intervals(), 1):
-                place = lines.get((tier.name, index))
-                where = f":{place}" if place else f": tier {tier.name!r}, interval {index}"
                 if text.strip():
-                    out.append((tier.name, start, end, text, f"{path}{where}"))
+                    where = f"{path}: tier {tier.name!r}, interval {index}"
+                    out.append((tier.name, start, end, text, where))
     return out
 
 

@@ -5,7 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate
-from typing import Any, cast
+from typing import Any
 
 from capar.model.facts import (
     Displaced,
@@ -108,7 +108,11 @@ def edges(
     for motion in moving:
         held = contacts.get(motion.object, [])
         start, stop = _around(held, motion.first), _around(held, motion.last)
-        within = [edge for edge in true.get(motion.object, ()) if _meet(edge, motion)]
+        within = [
+            edge
+            for edge in true.get(motion.object, ())
+            if edge.first <= motion.last and motion.first <= edge.last
+        ]
         if start:
             frame = min((edge.first for edge in within), default=motion.first)
             frame = max(min(frame, motion.first), start.first)
@@ -118,10 +122,6 @@ def edges(
             frame = min(max(frame, motion.last), stop.last)
             found.append(Edge(Settles, motion.object, motion.last, frame))
     return tuple(found)
-
-
-def _meet(one: Displaced, other: Moving) -> bool:
-    return one.first <= other.last and other.first <= one.last
 
 
 def _around(contacts: Sequence[Touching], frame: int) -> Touching | None:
@@ -199,17 +199,13 @@ def overlapping(
     own: Iterable[Touching], others: Sequence[Contacts]
 ) -> list[tuple[Touching, Touching]]:
     """Each contact of an end-effector with those of others that share a frame and the object."""
-    return [
-        (touch, each)
-        for touch in own
-        for contacts in others
-        for each in _sharing(contacts.get(touch.other, ()), touch)
-    ]
-
-
-def _sharing(contacts: Sequence[Touching], touch: Touching) -> Sequence[Touching]:
-    first = bisect_left(contacts, touch.first, key=lambda each: each.last)
-    return contacts[first : bisect_right(contacts, touch.last, key=lambda each: each.first)]
+    found = []
+    for touch in own:
+        for contacts in (each.get(touch.other, ()) for each in others):
+            first = bisect_left(contacts, touch.first, key=lambda each: each.last)
+            last = bisect_right(contacts, touch.last, key=lambda each: each.first)
+            found += [(touch, each) for each in contacts[first:last]]
+    return found
 
 
 def shared(
@@ -274,7 +270,9 @@ class Stretches:
         self._seen: dict[str, list[Stretch]] = defaultdict(list)
         self._touches: dict[str, set[str]] = defaultdict(set)
         self._agents = {fact.body: fact.agent for fact in facts if isinstance(fact, OfAgent)}
-        self._borders: dict[str, list[Interval]] = defaultdict(list)
+        self.borders: dict[str, list[Interval]] = defaultdict(list)
+        """First and last frames at which rules may draw a border, by body."""
+
         acting = {fact.ee for fact in facts if isinstance(fact, Link)}
         intervals = FactIntervals(facts)
         for fact in facts:
@@ -285,19 +283,12 @@ class Stretches:
                     self._seen[fact.object].append(stretch)
                     if fact.sensor not in acting:
                         continue
-                self._add(stretch, border=cast(Observed, fact).is_border())
+                _, body, _, first, last = stretch
+                self._by_body[body].append(stretch)
+                if isinstance(fact, Observed) and fact.is_border():
+                    self.borders[body].append((first, last))
         for stretches in self._by_body.values():
             stretches.sort(key=lambda each: (each[3], each))
-
-    def _add(self, stretch: Stretch, *, border: bool) -> None:
-        _, body, _, first, last = stretch
-        self._by_body[body].append(stretch)
-        if border:
-            self._borders[body].append((first, last))
-
-    def frames(self, body: str) -> Iterable[tuple[int, int]]:
-        """First and last frames at which rules may draw a border for this body."""
-        return self._borders.get(body, ())
 
     def numbered(
         self, ee: str, ticks: Sequence[int], reach: dict[str, list[tuple[int, int]]]
@@ -309,7 +300,7 @@ class Stretches:
         whole = [(ticks[0], ticks[-1])]
         for body, spans in {**reach, ee: whole}.items():
             for how, _, other, first, last in self._by_body.get(body, ()):
-                if _meets(spans, first, last):
+                if _overlap(spans, first, last):
                     yield from _ranked(ee, (how, body, other, first, last), ticks)
         concerned = {*reach, *(other for name in reach for other in self._touches.get(name, ()))}
         for name in sorted(concerned):
@@ -326,12 +317,6 @@ def _stretches(fact: Fact, intervals: FactIntervals) -> Iterable[Stretch]:
     if interval is not None:
         for other in fact.other_bodies():
             yield fact.stretch(), fact.subject(), other, *interval
-
-
-def _meets(times: Sequence[tuple[int, int]], first: int, last: int) -> bool:
-    """Whether one of disjoint stretches in order shares a frame with an interval."""
-    index = bisect_right(times, (last, 1 << 62)) - 1
-    return index >= 0 and times[index][1] >= first
 
 
 def _ranked(ee: str, stretch: Stretch, ticks: Sequence[int]) -> Iterable[Fact]:
@@ -453,11 +438,11 @@ def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]
                 bisect_right(scene.pauses[ee], gap[0]) : bisect_left(scene.pauses[ee], gap[1])
             ]
         }
-        frames |= {frame for ends in scene.stretches.frames(ee) for frame in ends}
+        frames |= {frame for ends in scene.stretches.borders[ee] for frame in ends}
         frames |= {
             frame
             for name in reach
-            for ends in scene.stretches.frames(name)
+            for ends in scene.stretches.borders[name]
             if _overlap(reach[name], *ends)
             for frame in ends
         }

@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 from capar.model.facts import Fact, Frames, Link, OfAgent, RateMhz
 from capar.model.observation import (
@@ -31,30 +31,28 @@ def joint_actions(
     for joint, term in answer.of("takes_part"):
         assert isinstance(term, tuple)
         parts[joint].append(segments[str(term[1]), int(str(term[2]))])
-    found = [
-        _joint(joint, str(name), parts[joint], rate_hz) for joint, name in answer.of("acts_jointly")
-    ]
+    found = []
+    for joint, name in answer.of("acts_jointly"):
+        own = sorted(parts[joint], key=lambda each: each.ee)
+        _, shared, first, last = cast("tuple[str, str, int, int]", joint)
+        others = [
+            each
+            for each in own[0].objects
+            if each != shared and all(each in part.objects for part in own)
+        ]
+        found.append(
+            JointAction(
+                name=str(name),
+                objects=(shared, *others),
+                ees=tuple(each.ee for each in own),
+                segments=tuple(each.index for each in own),
+                first=first,
+                last=last,
+                start_s=first / rate_hz,
+                end_s=last / rate_hz,
+            )
+        )
     return tuple(sorted(found, key=lambda each: (each.first, each.last, each.objects)))
-
-
-def _joint(joint: Any, name: str, parts: Sequence[Segment], rate_hz: float) -> JointAction:
-    _, shared, first, last = joint
-    own = sorted(parts, key=lambda each: each.ee)
-    others = [
-        each
-        for each in own[0].objects
-        if each != shared and all(each in part.objects for part in own)
-    ]
-    return JointAction(
-        name=name,
-        objects=(shared, *others),
-        ees=tuple(each.ee for each in own),
-        segments=tuple(each.index for each in own),
-        first=first,
-        last=last,
-        start_s=first / rate_hz,
-        end_s=last / rate_hz,
-    )
 
 
 LEVELS = ("", "rel_start", "rel_end", "change_loc", "force")
@@ -195,8 +193,9 @@ class _Reading:
         return tuple(sorted(found))
 
     def _segment(self, link: Link, index: int, first: int, last: int) -> Segment:
-        tick = (link.ee, first)
-        frames = self.frame[tick], self.frame[link.ee, last]
+        tick, after = (link.ee, first), (link.ee, last)
+        frames = self.frame[tick], self.frame[after]
+        ((start, end, change, force),) = self.tables["features"][tick]
         names = [str(name) for (name,) in self.tables["named"][tick]]
         objects = tuple(str(name) for _, name in sorted(self.tables["object_at"][tick]))
         general = sorted({each for name in names[:1] for each in self.general[name]})
@@ -217,9 +216,9 @@ class _Reading:
             level=LEVELS[level] if not names else "",
             objects=objects,
             possessed=bool(objects) and objects[0] in held,
-            features=self._features(tick, link.kind),
-            begins=self._borders(tick, first, "first"),
-            ends=self._borders((link.ee, last), last, "last"),
+            features=FeatureSet(str(start), str(end), str(change), link.kind, str(force)),
+            begins=(Border("first"),) if first == 0 else tuple(sorted(self.why[tick])),
+            ends=(Border("last"),) if frames[1] == self.end else tuple(sorted(self.why[after])),
             purpose=purposes[0] if purposes else "",
             prepositions=tuple(
                 (str(name), str(body), str(other))
@@ -229,14 +228,6 @@ class _Reading:
                 (str(seen), str(when)) for seen, when in sorted(self.tables["looks"][tick])
             ),
         )
-
-    def _features(self, tick: Key, kind: str) -> FeatureSet:
-        ((start, end, change, force),) = self.tables["features"][tick]
-        return FeatureSet(str(start), str(end), str(change), kind, str(force))
-
-    def _borders(self, tick: Key, number: int, edge: str) -> tuple[Border, ...]:
-        at_edge = number == 0 if edge == "first" else self.frame[tick] == self.end
-        return (Border(edge),) if at_edge else tuple(sorted(self.why[tick]))
 
     def _conditions(self, tick: Key) -> Conditions:
         table = self.tables

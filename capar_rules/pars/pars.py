@@ -387,11 +387,14 @@ def _rules(base: Profile, fingerprint: str) -> Mapping[str, NamingRule]:
         name: int(value) for text in texts.values() for name, value in _CONSTANT.findall(text)
     }
     statements = [s for file, text in texts.items() for s in _statements(file, text)]
-    below = _Dependencies([each for each in statements if each.file.parent.name != CUTTING])
+    defining: dict[str, list[_Statement]] = defaultdict(list)
+    for each in statements:
+        for head in each.heads if each.file.parent.name != CUTTING else ():
+            defining[head].append(each)
     found = {}
     for file, text in texts.items():
         for name in _STATED.findall(_COMMENT.sub(_strings, text)):
-            words = below.words(name)
+            words = _words(name, defining)
             rests_on = (Threshold(each, thresholds[each]) for each in sorted(words & {*thresholds}))
             digest = sha256(text.encode()).hexdigest()
             place = f"{file.parent.name}/{file.name}"
@@ -399,32 +402,24 @@ def _rules(base: Profile, fingerprint: str) -> Mapping[str, NamingRule]:
     return found
 
 
-class _Dependencies:
-    """Which words a definition uses, and the vocabulary that it reads by name.
+def _words(name: str, defining: Mapping[str, Sequence[_Statement]]) -> frozenset[str]:
+    """The words that the definition of a primitive uses, and of the vocabulary that it reads.
 
     A predicate of the vocabulary is followed within its own file, and to the thresholds; beyond,
     nearly everything depends on everything.
     """
-
-    def __init__(self, statements: Iterable[_Statement]) -> None:
-        self._defining: dict[str, list[_Statement]] = defaultdict(list)
-        for statement in statements:
-            for head in statement.heads:
-                self._defining[head].append(statement)
-
-    def words(self, name: str) -> frozenset[str]:
-        own = self._defining.get(f"fits {name}", [])
-        found = {word for each in own for word in each.words}
-        seen = set[tuple[str, str]]()
-        waiting = {(read, "") for each in own for read in each.reads}
-        while waiting:
-            read, file = waiting.pop()
-            seen.add((read, file))
-            for statement in self._defining.get(read, ()):
-                if not file or statement.file.name in {file, THRESHOLDS}:
-                    found |= statement.words
-                    waiting |= {(below, statement.file.name) for below in statement.reads} - seen
-        return frozenset(found)
+    own = defining.get(f"fits {name}", [])
+    found = {word for each in own for word in each.words}
+    seen = set[tuple[str, str]]()
+    waiting = {(read, "") for each in own for read in each.reads}
+    while waiting:
+        read, file = waiting.pop()
+        seen.add((read, file))
+        for statement in defining.get(read, ()):
+            if not file or statement.file.name in {file, THRESHOLDS}:
+                found |= statement.words
+                waiting |= {(below, statement.file.name) for below in statement.reads} - seen
+    return frozenset(found)
 
 
 def _statements(file: Path, text: str) -> Iterator[_Statement]:

@@ -6,7 +6,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from capar.model.errors import RuleError
 from capar.model.facts import Fact, Frames, Touching, ZeroCrossing
 from capar_rules.engine import solver, syntax
 from capar_rules.engine.solver import brave
@@ -146,10 +145,6 @@ def test_all_rules_stay_where_more_than_definitions_decides_on_the_answer(furthe
     assert asked_for(rules) == list(rules)
 
 
-def texts(path: Path) -> list[str]:
-    return [each.text for each in parse([path])]
-
-
 @pytest.fixture
 def including(tmp_path: Path) -> Path:
     """A file that includes another one, ``below.lp``."""
@@ -165,15 +160,3 @@ def test_a_file_that_did_not_change_is_parsed_once(
     first = parse([including])
     monkeypatch.setattr(syntax, "_parsed", lambda run: pytest.fail("it was parsed again"))
     assert parse([including]) is first
-
-
-def test_a_file_that_cannot_be_parsed_any_more_is_an_error_until_it_is_mended(
-    including: Path,
-) -> None:
-    whole, before = including.read_text(), texts(including)
-    including.write_text(f"{whole}c(.\n")
-    for _ in range(2):
-        with pytest.raises(RuleError, match="syntax error"):
-            parse([including])
-    including.write_text(whole)
-    assert texts(including) == before

@@ -147,21 +147,6 @@ def test_a_text_names_what_is_touched_carried_or_done(
         assert read_labels(path, kind).marks == (wanted,)
 
 
-@pytest.mark.parametrize("write", [elan, praat])
-def test_overlaps_are_told_with_the_line_in_the_file(write, tmp_path: Path) -> None:
-    if write is praat:
-        path = praat(tmp_path, MARKS)
-        text = path.read_text().replace("xmin = 0.4", "xmin = 0.3")
-        path.write_text(text)
-    else:
-        path = elan(tmp_path, [*MARKS, ("right_hand", 1000, 1500, "lift")])
-    with pytest.raises(FileError, match="overlap") as raised:
-        read_labels(path)
-    line = int(str(raised.value).split(":")[1])
-    shown = path.read_text().splitlines()[line - 1]
-    assert "ANNOTATION_ID" in shown or "intervals [" in shown
-
-
 @pytest.mark.parametrize(
     ("name", "text", "says"),
     [

@@ -3,11 +3,10 @@
 import re
 from collections.abc import Mapping
 from functools import cache
-from pathlib import Path
 
 import pytest
 from case_batches import solve_batch
-from rule_cases import HERE, Case, all_cases, read_cases
+from rule_cases import HERE, Case, all_cases
 
 from capar.model.errors import RuleError
 from capar_rules.engine.solver import rule_file, solve, text_of
@@ -96,9 +95,3 @@ def test_every_rule_file_has_a_case(concept: str) -> None:
 def test_every_file_of_cases_belongs_to_a_rule_file() -> None:
     found = {case.concept for case in all_cases() if not case.concept.startswith("prepositions/")}
     assert [each for each in sorted(found) if not rule_file(f"{each}.lp").exists()] == []
-
-
-def test_what_stands_before_the_first_case_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "lift.cases").write_text("tag(cup,mobile).\n%% Lifted\n")
-    with pytest.raises(ValueError, match="begins with '%% title'"):
-        list(read_cases(tmp_path / "lift.cases"))
