@@ -46,7 +46,7 @@ def rule_from_features(
     start, end, change, force = parts
     found = FeatureSet(start, end, change, "any", force)
     over = (general,) if general else ()
-    return _ordered(name, found, rules, over=over, definition=definition, verb=verb)
+    return _ordered(name, found, rules, over=over, definition=definition, verb=verb) + LACKING
 
 
 def rule_from_segment(
@@ -88,7 +88,7 @@ def rule_from_segment(
         verb=verb, rule=smallest,
     )  # fmt: skip
     examples = _examples(text, name, called, measured, segment, rules)
-    return "\n".join([text.replace(LACKING, "") if len(examples) > 1 else text, *examples])
+    return "\n".join([text if len(examples) > 1 else text + LACKING, *examples])
 
 
 def _smallest(

@@ -10,15 +10,6 @@ from tempfile import TemporaryDirectory
 from capar.model.errors import CaparError, FileError, RuleError, UnknownNameError
 from capar.model.facts import (
     Fact,
-    ForceTransfer,
-    Frames,
-    Gap,
-    Link,
-    Moving,
-    RateMhz,
-    Tag,
-    Touching,
-    ZeroCrossing,
     read_fact,
 )
 from capar.model.par import FeatureSet
@@ -207,8 +198,7 @@ def written(example: Example) -> str:
     return "\n".join(lines) + "\n*%\n"
 
 
-TELLING = (Frames, RateMhz, Link, Tag, ZeroCrossing, Touching, Gap, Moving, ForceTransfer)
-"""The facts that an example contains: contacts and motions, without places and courses."""
+LACKING = "% Before it can be added it needs an Example and a Counter-example.\n"
 
 
 def new_rule(
@@ -220,7 +210,6 @@ def new_rule(
     besides: Sequence[str] = (),
     verb: str = "",
     rule: str = "",
-    examples: Sequence[Example] = (),
 ) -> str:
     """The text of a rule file for a primitive with these features.
 
@@ -232,7 +221,6 @@ def new_rule(
         besides: Others that fit some of the same segments, over which it takes precedence.
         verb: The verb for it; its name in small letters if empty.
         rule: Which segments fit it, in place of the row of features.
-        examples: Examples and counter-examples.
 
     Raises:
         RuleError: The name is no name of a primitive, or a text would not stay a text.
@@ -253,17 +241,7 @@ def new_rule(
         f'%   fits(Segment, "{name}") :- fits(Segment, "{next(iter(over), "") or "General"}"), '
         "further conditions.\n"
     )
-    if not examples:
-        text += LACKING
-    return "\n".join([text, *map(written, examples)])
-
-
-LACKING = "% Before it can be added it needs an Example and a Counter-example.\n"
-
-
-def telling(facts: Sequence[Fact]) -> tuple[Fact, ...]:
-    """The facts of a capture that an example contains."""
-    return tuple(each for each in facts if isinstance(each, TELLING))
+    return text
 
 
 def try_rule(path: Path, *, base: str = DEFAULT, beside: Sequence[Path] = ()) -> tuple[str, ...]:

@@ -108,6 +108,9 @@ def given_in_audit() -> frozenset[Signature]:
     }
 
 
+EMPTY: frozenset[Signature] = frozenset((("gap", 4), ("together", 4)))
+"""Predicates that hold of nothing in any world, though they may of a segment."""
+
 MEASURED: frozenset[Signature] = frozenset(
     {("course", 2), ("member", 3), ("solid", 1), ("shapeless", 1)}
 )

@@ -27,6 +27,7 @@ from capar_rules.engine.syntax import (
 )
 from capar_rules.lint.audit import (
     ASKED,
+    EMPTY,
     Audit,
     Extents,
     Worlds,
@@ -244,7 +245,7 @@ class Trial:
                 signature = each.atoms[0].signature if each.atoms else FITS
                 if each.kind == "atom" and not each.sign and signature != FITS:
                     chosen = self._below([signature]) & chosen_in_audit()
-                    if chosen or signature not in given_in_audit():
+                    if chosen or signature in EMPTY or signature not in given_in_audit():
                         found.setdefault(at, each.text)
         return found
 

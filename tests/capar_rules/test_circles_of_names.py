@@ -40,12 +40,12 @@ def test_a_circle_is_refused_with_its_names(ordering: str, tmp_path: Path) -> No
     found = circles(faults([written(tmp_path, "Up", ordering)], profile="extended"))
     circle = CASES[ordering]
     assert bool(found) == bool(circle)
-    assert all(f"closes a circle ({circle}): a segment that" in each for each in found)
+    assert any(f"closes a circle ({circle}): a segment" in each for each in found) == bool(circle)
 
 
 def test_a_file_that_closes_a_circle_with_another_one_is_refused(tmp_path: Path) -> None:
     """The second file is sound by itself: the circle goes through the first one."""
     up = written(tmp_path, "Up", 'specialises("Up", "Touch").\n')
     down = written(tmp_path, "Down", 'specialises("Down", "Up").\nprecedes("Touch", "Down").\n')
-    (circle, *_) = circles(check(down, beside=[up]))
-    assert "(Touch precedes Down, Down specialises Up, Up specialises Touch)" in circle
+    told = " ".join(circles(check(down, beside=[up])))
+    assert "(Touch precedes Down, Down specialises Up, Up specialises Touch)" in told
