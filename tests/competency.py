@@ -35,21 +35,6 @@ UNION { ?o capar:segment/capar:placement ?in . ?in capar:preposition "in" }
 """
 """Which objects were ever inside a container?"""
 
-TOUCHED_AND_UNMOVED = """
-SELECT DISTINCT ?capture { ?o capar:segment ?s ; rdfs:label ?capture .
-?s capar:action/capar:name "Touch" ; capar:dominant ?x ; capar:start ?a ; capar:end ?b .
-FILTER NOT EXISTS { ?o capar:fact ?m . ?m a capar:Moving ; capar:body ?x .
-?m capar:start ?c ; capar:end ?d . FILTER(?c <= ?b && ?a <= ?d) } }
-"""
-"""Which captures have a Touch that ended without the touched object having moved?"""
-
-IN_TOUCH = """
-SELECT ?capture ?a ?b { ?o capar:fact ?t ; rdfs:label ?capture .
-?t a capar:Touching ; capar:body/capar:name "bottle" ; capar:other/capar:name "table" .
-?t capar:start ?a ; capar:end ?b }
-"""
-"""When did bottle and table touch?"""
-
 LOOKED_BEFORE = """
 SELECT ?who ?object (MAX(?t - ?l) AS ?before) { ?o capar:fact ?look , ?grasp .
 ?look a capar:LookingAt ; capar:seen ?x ; capar:start ?l .
@@ -69,8 +54,6 @@ SELECT ?address (capar:highestSpeed(?o, ?hand, ?a, ?b) AS ?speed) { ?o capar:seg
 QUERIES = {
     "held while tilted": HELD_WHILE_TILTED,
     "inside": INSIDE,
-    "touched and unmoved": TOUCHED_AND_UNMOVED,
-    "in touch": IN_TOUCH,
     "looked before": LOOKED_BEFORE,
     "reaching speeds": REACHING_SPEEDS,
 }

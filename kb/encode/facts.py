@@ -58,9 +58,13 @@ class Scene:
     """Further properties of some facts, by fact."""
 
 
-@cache
 def _form(kind: Any) -> tuple[NamedNode, dict[str, NamedNode]]:
     """The class of a kind of fact, and its properties by field; of samples those with names."""
+    return _cached_form(kind)  # type checkers take a class with a declared hash for unhashable
+
+
+@cache
+def _cached_form(kind: Any) -> tuple[NamedNode, dict[str, NamedNode]]:
     declared = kind.declaration
     cls, *predicates = (getattr(CAPAR, each) for each in declared.rdf)
     named = [each.name for each in fields(kind) if not declared.sampled or each.type is str]
