@@ -94,12 +94,6 @@ def rule_base(
 ) -> "Profile":
     """A profile with the rules that people wrote, each checked by its text first.
 
-    Args:
-        profile: Its name.
-        rules: The project's folder that was named.
-        actionary: The Actionary that the command names or opens; None for CAPAR_ACTIONARY's.
-        steady: Whether to resolve flicker; None for the profile's default.
-
     Raises:
         CaparError: A folder is missing, or a rule file has a fault.
     """
@@ -133,10 +127,6 @@ def has_actionary(place: str, *, named: str | None) -> bool:
 def require_actionary(actionary: str | None, *, observed: bool = False) -> None:
     """Refuse an Actionary that is not there, so that a typing mistake creates none.
 
-    Args:
-        actionary: Its place; None for the usual one.
-        observed: Whether observations must be in it; else a folder of rules is enough.
-
     Raises:
         FileError: Nothing is there.
     """
@@ -157,10 +147,6 @@ def confirm_new(actionary: str | None, *, new: bool) -> None:
 
     Where nobody can be asked, one is made unless its name resembles one beside it, or its parent
     folder is missing.
-
-    Args:
-        actionary: Its place; None for the usual one.
-        new: Whether to make it without asking.
 
     Raises:
         FileError: It is likely a typing mistake, or the answer was no.
@@ -192,12 +178,7 @@ def can_ask() -> bool:
 
 @contextmanager
 def open_words(where: str | None, *, corrected: bool = False) -> "Iterator[Store | None]":
-    """The store of an Actionary to read; None where none is named and none stands here.
-
-    Args:
-        where: The Actionary's place; None for the usual one.
-        corrected: Whether persons' claims stand in place of what they correct.
-    """
+    """The store of an Actionary to read; None where none is named and none stands here."""
     from kb.corrections import corrected as corrected_copy
     from kb.store.stores import is_address, open_store
     from kb.store.updates import check_current

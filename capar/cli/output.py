@@ -133,17 +133,7 @@ def print_table(
     caption: str = "",
     sections: Collection[int] = (),
 ) -> None:
-    """A table on standard output.
-
-    Args:
-        columns: Its heading.
-        rows: Cells of equally many columns.
-        right: Columns of numbers.
-        names: Columns that stay whole where the terminal is narrow.
-        title: What stands above it.
-        caption: What stands below it.
-        sections: Rows below which a line stands.
-    """
+    """A table on standard output."""
     from rich.box import SIMPLE_HEAD
     from rich.markup import escape
 
@@ -214,10 +204,6 @@ def progress(doing: str) -> "Callable[[Sequence[Any]], Iterable[Any]]":
 
 def check_writable(path: Path, *, suffixes: Collection[str] = ()) -> None:
     """Check that a file could be written, before anything is computed for it.
-
-    Args:
-        path: The file, which is left as it is.
-        suffixes: How its name may end; any, if there are none.
 
     Raises:
         FileError: Its name ends otherwise.

@@ -237,13 +237,6 @@ def _act(
 ) -> "tuple[Approach | None, Performed]":
     """Perform an action from the given place, or, if steps may be taken, from where they lead.
 
-    Args:
-        task: The manner, and whether steps may be taken.
-        source: What was recorded.
-        human: Who performs.
-        where: The scene.
-        names: The scene's names of objects, where contacts as the PARs assert them are a gate.
-
     Raises:
         PlanError: It is out of reach, and no step helps.
     """

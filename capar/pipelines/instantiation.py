@@ -50,13 +50,6 @@ def check_applicable(
     was observed to do. Of whom nothing is declared, nothing is ruled out, which is returned as a
     note. An ability to do a more general action, or the whole one, holds for its steps.
 
-    Args:
-        action: What is to be performed.
-        recording: Where its steps are recorded.
-        agent: Who performs: the name, and the kind if that is another.
-        kinds: What takes the part of each recorded object, by its kind.
-        abilities: What is known of agents and kinds.
-
     Raises:
         PlanError: Somebody or something is not able to; the message says what would declare it.
     """

@@ -61,12 +61,6 @@ def verbs_for(
 ) -> tuple[Fit, ...]:
     """The verbs that fit a segment, best first.
 
-    Args:
-        segment: ``CAPTURE/END_EFFECTOR/INDEX``.
-        words: The primitives' words.
-        store: Where VerbNet is, if it was imported.
-        rules: The rule profile to observe with, or its name.
-
     Raises:
         AddressError: It is no address of a segment, or names no capture.
         UnknownNameError: There is no segment at it.

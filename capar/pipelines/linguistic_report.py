@@ -81,10 +81,6 @@ def primitive_words(files: Sequence[Path]) -> tuple[PrimitiveWords, ...]:
 def cases_of(files: Sequence[Path], folder: Path | None = None) -> tuple[Case, ...]:
     """Cases that show primitives: examples in the rule files, and expectations in a folder.
 
-    Args:
-        files: Rule files of primitives, which may carry examples of their own.
-        folder: A folder of rule cases: ``.cases`` files whose expectations name segments.
-
     Raises:
         FileError: The folder is none.
         RuleError: An example has a fault.
@@ -112,13 +108,7 @@ def linguistics(
     store: "Store | None" = None,
     cases: Sequence[Case] = (),
 ) -> LinguisticReport:
-    """The linguistic report over rule files of primitives and a store's observations.
-
-    Args:
-        files: The rule files of primitives; by default those that ship.
-        store: Where observations are, and VerbNet if it was imported.
-        cases: Shipped cases that show primitives.
-    """
+    """The linguistic report over rule files of primitives and a store's observations."""
     chosen = tuple(files) or primitive_files()
     words = primitive_words(chosen)
     seen: tuple[Seen, ...] = seen_in(store) if store else ()

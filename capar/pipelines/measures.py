@@ -122,12 +122,7 @@ class Measures:
         return replace(asked, value=value * scale, limit=limit)
 
     def series(self, asked: Measured, frames: Frames | None = None) -> Series | None:
-        """A quantity over time; None if it is none.
-
-        Args:
-            asked: The quantity, its bodies, and the frames to which it is relative.
-            frames: Where to measure; by default everywhere.
-        """
+        """A quantity over time; None if it is none."""
         every = np.arange(self.observation.frames) if frames is None else frames
         make, of_path = SERIES.get(asked.quantity), OF_PATHS.get(asked.quantity)
         with np.errstate(invalid="ignore"):

@@ -64,12 +64,7 @@ def flicker_notices(facts: Iterable[Fact], rate_hz: float) -> Iterator[Notice]:
 
 
 def unmoved_notices(facts: Iterable[Fact], times: Float[np.ndarray, "frames"]) -> Iterator[Notice]:
-    """A notice for each object in whose motion there are frames without a mover.
-
-    Args:
-        facts: Measurements and movers.
-        times: Clock of the capture [s].
-    """
+    """A notice for each object in whose motion there are frames without a mover."""
     moved: dict[str, int] = defaultdict(int)
     lacking: dict[str, list[MovedBy]] = defaultdict(list)
     for fact in facts:
@@ -239,13 +234,6 @@ def observe_again(
     places: Sequence[Path],
 ) -> Observation:
     """The observation of the same files by other rules.
-
-    Args:
-        files: Path and SHA-256 of each file that it was made from.
-        known: The observation as it is stored.
-        measured: What was measured then; its flicker is resolved again only if it was then.
-        rules: The rules that are to name its segments.
-        places: Folders below which the files are.
 
     Raises:
         FileError: The files are not there, or have changed.

@@ -99,12 +99,7 @@ class Procedure:
 def procedures_of(
     recordings: Iterable[Recording], open_source: Callable[[Recording], Source] | None = None
 ) -> tuple[Procedure, ...]:
-    """The recordings among some in which one hand handles one object and nothing else is done.
-
-    Args:
-        recordings: Those that may be used.
-        open_source: Observes one, so that it can be performed; by default from its capture.
-    """
+    """The recordings among some in which one hand handles one object and nothing else is done."""
     found = []
     for recording in recordings:
         acting = {s.ee for s in recording.steps if s.ee.endswith("_hand") and s.objects}

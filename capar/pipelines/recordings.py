@@ -81,10 +81,6 @@ def stored_recordings(
 
     A capture is known by the SHA-256 of its ``capture.toml``, as an Actionary does not keep where
     captures are.
-
-    Args:
-        actionary: What was observed.
-        folder: With captures in it, or in the folders in it.
     """
     files = sorted([*folder.glob(BUNDLE), *folder.glob(f"*/{BUNDLE}")], reverse=True)
     captures = {sha256(each.read_bytes()).hexdigest(): each for each in files}

@@ -247,15 +247,6 @@ def perform(
 ) -> Performance:
     """Perform a recording in a scene.
 
-    Args:
-        choice: What is performed.
-        scene: Where.
-        human: Who performs.
-        kind: What of the recorded path is kept.
-        duration_s: How long it takes [s]; as long as it did, unless stated.
-        hand: Which hand does it; the recorded one, unless stated or asked for.
-        effort: In which manner; as the adverbs of the requests say, unless stated.
-
     Raises:
         PlanError: It is impossible, or out of reach; the message says what would help.
     """

@@ -19,10 +19,6 @@ class Carried:
     """Poses up to the last settled frame, and paths and turns summed up to it.
 
     Resting bodies are placed by the poses, and rules compare the sums of different windows.
-
-    Args:
-        calibration: What was decided before.
-        frames: How many poses are kept of each body.
     """
 
     def __init__(self, calibration: Calibration, frames: int) -> None:

@@ -25,9 +25,6 @@ class EventSocket:
     before, then each one as it comes. When it closes, programs are disconnected in the ordinary
     way, after the last event.
 
-    Args:
-        port: The port [1]; 0 for any that is free.
-
     Raises:
         DeviceError: The library is missing, or the port is in use.
     """

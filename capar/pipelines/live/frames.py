@@ -60,12 +60,7 @@ class Window:
 
 
 class FrameBuffer:
-    """Holds the last frames of all bodies of a rig, and all of them on disk.
-
-    Args:
-        rig: Bodies, shapes, agents; the poses of its streams are not read.
-        longest: Most frames that are asked for.
-    """
+    """Holds the last frames of all bodies of a rig, and all of them on disk."""
 
     def __init__(self, rig: Capture, longest: int) -> None:
         self.rig = rig
@@ -178,12 +173,7 @@ def replayed(capture: Capture) -> list[Poses]:
 
 
 def paced(frames: list[Poses], speed: float) -> Iterator[list[Poses]]:
-    """The frames that are due, again and again, at a speed; one at a time as fast as it goes.
-
-    Args:
-        frames: A recording's frames.
-        speed: How many times as fast as recorded [1]; 0 for as fast as it goes.
-    """
+    """The frames that are due, again and again, at a speed; one at a time as fast as it goes."""
     if speed <= 0.0:
         yield from ([each] for each in frames)
         return

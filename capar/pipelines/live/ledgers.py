@@ -130,10 +130,6 @@ class FactLedger:
         """Facts of a window in frames of the recording, with intervals from their beginning.
 
         Facts that are settled are left out, and so are those that hold always.
-
-        Args:
-            facts: Facts of the window, in its own frames.
-            begin: The frame of the recording with which the window begins.
         """
         observed = [fact for fact in facts if isinstance(fact, Observed)]
         of_motions = (_moved(fact, begin) for fact in observed if isinstance(fact, OF_A_MOTION))
@@ -180,12 +176,7 @@ class FactLedger:
         return list(dict.fromkeys(out))
 
     def settle(self, stitched: Sequence[Observed], frontier: int) -> list[Observed]:
-        """Move the frontier; what ends no later is settled, and returned.
-
-        Args:
-            stitched: What ``stitched`` gave.
-            frontier: The last frame that no later frame can change.
-        """
+        """Move the frontier; what ends no later is settled, and returned."""
         done: list[Observed] = []
         going: dict[Key, _Open] = {}
         ended: set[tuple[Key, int]] = set()
@@ -281,13 +272,7 @@ class _Link:
 
 
 class SegmentLedger:
-    """Takes one answer of the rules after the other, and reports what is new.
-
-    Args:
-        kept: How many settled segments of a link are remembered.
-        later: By how many frames later than others a segment is settled that ends with such a kind
-            of event.
-    """
+    """Takes one answer of the rules after the other, and reports what is new."""
 
     def __init__(self, kept: int, later: Mapping[str, int] = MappingProxyType({})) -> None:
         self._kept = kept
@@ -423,13 +408,7 @@ class RuleMemory:
         self._facts += facts
 
     def forget(self, begin: int, borders: Sequence[int], margin: int) -> None:
-        """Drop what rules do not need again.
-
-        Args:
-            begin: The frame from which on everything is kept.
-            borders: Frames at which segments begin that go on; what ends near them is kept.
-            margin: How many frames away is near.
-        """
+        """Drop what rules do not need again."""
         at, kept, gone = sorted(borders), list[Observed](), list[Observed]()
         for fact in self._facts:
             ends = fact.ends()

@@ -291,11 +291,6 @@ class LiveObserver:
 
         Of rests only those count in which nothing is touched: only they are named. A foot that
         bears a part of the weight is asked for no duration.
-
-        Args:
-            recent: Facts up to the newest frame.
-            decided: Frames at which more is known for other reasons.
-            last: The newest frame.
         """
         rate_hz = self._rate_mhz / 1000.0
         least = {

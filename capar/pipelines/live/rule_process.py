@@ -35,13 +35,7 @@ def inferred(facts: Sequence[Fact], rules: Profile) -> Inference:
 
 
 class RuleProcess:
-    """Answers what rules say of facts, from this process or from workers that follow each other.
-
-    Args:
-        rules: The rule base.
-        own_asks: How often this process answers itself, at first.
-        asks: How often each worker is asked.
-    """
+    """Answers what rules say of facts, from this process or from workers that follow each other."""
 
     def __init__(self, rules: Profile, *, own_asks: int = OWN_ASKS, asks: int = ASKS) -> None:
         self._rules = rules
