@@ -4,11 +4,11 @@ import json as codec
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 from typer import Argument, Option
@@ -292,8 +292,7 @@ def _ask_for_names(observation: "Observation", folder: Path) -> bool:
     return bool(names)
 
 
-@dataclass(frozen=True, slots=True)
-class _Live:
+class _Live(NamedTuple):
     """What the options say of live observation."""
 
     source: str  # the capture that is replayed; empty with a device
@@ -307,25 +306,22 @@ class _Live:
     websocket: int | None
     markers: str
 
-    def __post_init__(self) -> None:
-        """Check that there is one source.
-
-        Raises:
-            CaparError: None or two, or a device without a rig or a calibration.
-        """
-        if bool(self.source) == bool(self.device):
-            raise CaparError("--live takes a CAPTURE to replay, or --device ADDRESS with --rig")
-        if self.device and not self.rig:
-            raise CaparError(
-                "--device needs --rig: a capture bundle of the same bodies, such as an earlier "
-                "take by `capar record`, which says what rides on which sensor"
-            )
-        if self.device and not self.calibration and self.lead_in_s <= 0.0:
-            raise CaparError("--device needs --calibration FILE, or --lead-in SECONDS above 0")
-
 
 def _observe_live(options: _Live, rules: "Profile") -> "Observation":
-    """Observe until the source ends or the user interrupts."""
+    """Observe until the source ends or the user interrupts.
+
+    Raises:
+        CaparError: There is no source or two, or a device without a rig or a calibration.
+    """
+    if bool(options.source) == bool(options.device):
+        raise CaparError("--live takes a CAPTURE to replay, or --device ADDRESS with --rig")
+    if options.device and not options.rig:
+        raise CaparError(
+            "--device needs --rig: a capture bundle of the same bodies, such as an earlier "
+            "take by `capar record`, which says what rides on which sensor"
+        )
+    if options.device and not options.calibration and options.lead_in_s <= 0.0:
+        raise CaparError("--device needs --calibration FILE, or --lead-in SECONDS above 0")
     from capar.pipelines.live.frames import DeviceFrames, capture_of, lead_in, paced, replayed
     from capar.pipelines.live.observer import LiveObserver
     from extractors.calibration import calibrate

@@ -147,28 +147,24 @@ class Measures:
 
 
 def _sum(known: Measures, asked: Measured, frames: Frames) -> Series:
-    """A quantity that adds up from frame to frame: path or rotation."""
-    summed = turned_and_gone(known.body(asked.bodies[0]))[asked.quantity == "turned"]
+    """A quantity that adds up from frame to frame: path, rotation, or turn about the vertical."""
+    body = known.body(asked.bodies[0])
+    if asked.quantity == "turn":
+        summed = np.cumsum([0.0, *np.nan_to_num(spin_steps(body.orientations))])
+        return Series(frames, MILLI * np.abs(summed - summed[asked.first])[frames])
+    summed = turned_and_gone(body)[asked.quantity == "turned"]
     return Series(frames, MILLI * (summed - summed[asked.first])[frames])
-
-
-def _turn(known: Measures, asked: Measured, frames: Frames) -> Series:
-    turned = np.cumsum([0.0, *np.nan_to_num(spin_steps(known.body(asked.bodies[0]).orientations))])
-    return Series(frames, MILLI * np.abs(turned - turned[asked.first])[frames])
 
 
 def _lean(known: Measures, asked: Measured, frames: Frames) -> Series:
     name = asked.bodies[0]
     calibration = known.measurements.calibration
     angle = lean(known.body(name).orientations, np.array(calibration.body(name).upright))
+    if asked.quantity == "leaning":
+        return Series(frames, MILLI * np.abs(angle - angle[asked.first])[frames])
     limit = MILLI * thresholds_of(calibration).lean_rad
     bars = known.bars(Leans, object=name)
     return Series(frames, MILLI * angle[frames], (limit,), bars, "leaning far over", most=True)
-
-
-def _leaning(known: Measures, asked: Measured, frames: Frames) -> Series:
-    angle = _lean(known, asked, np.arange(known.observation.frames)).values
-    return Series(frames, np.abs(angle - angle[asked.first])[frames])
 
 
 def _motion(known: Measures, asked: Measured, frames: Frames) -> Series:
@@ -303,9 +299,9 @@ OF_PATHS: Mapping[str, tuple[Callable[[Displacement], Values], float]] = {
 SERIES: Mapping[str, Callable[[Measures, Measured, Frames], Series | None]] = {
     "path": _sum,
     "turned": _sum,
-    "turn": _turn,
+    "turn": _sum,
     "lean": _lean,
-    "leaning": _leaning,
+    "leaning": _lean,
     "push": _push,
     "closing": _closing,
     "speed": _speed,

@@ -171,23 +171,20 @@ def choices(requests: Sequence[Request], recordings: Sequence[Recording]) -> tup
         for size in range(len(requests) - at, 0, -1):
             part = tuple(requests[at : at + size])
             does = ((one, _steps_for(part, one)) for one in recordings)
-            fitting = [(_rank(part, *each), *each) for each in does if each[1]]
+            fitting = []
+            for one, steps in does:
+                pairs = _parts(part, steps).items() if steps else ()
+                foreign = sum(name not in {own, *one.kinds.get(own, ())} for own, name in pairs)
+                if steps:
+                    fitting.append((len(one.steps), foreign, one.name, one, steps))
             if fitting:
-                (_, recording, steps), *others = sorted(fitting, key=lambda each: each[0])
-                found.append(Choice(part, recording, steps, tuple(o[1].name for o in others)))
+                (*_, recording, steps), *others = sorted(fitting, key=lambda each: each[:3])
+                found.append(Choice(part, recording, steps, tuple(o[2] for o in others)))
                 at += size
                 break
         else:
             raise _unobserved(requests[at], recordings)
     return tuple(found)
-
-
-def _rank(
-    requests: Sequence[Request], recording: Recording, steps: Sequence[Step]
-) -> tuple[int, int, str]:
-    pairs = _parts(requests, steps).items()
-    foreign = sum(name not in {part, *recording.kinds.get(part, ())} for part, name in pairs)
-    return len(recording.steps), foreign, recording.name
 
 
 def _steps_for(requests: Sequence[Request], recording: Recording) -> tuple[Step, ...]:
@@ -251,8 +248,14 @@ def perform(
         PlanError: It is impossible, or out of reach; the message says what would help.
     """
     recorded = observed_source(choice.recording.capture)
-    for request in choice.requests:
-        _check_place(request, recorded)
+    seen = (p for each in recorded.observation.segments for p in each.prepositions)
+    contained = any(word == "in" and moved in recorded.paths for word, moved, _ in seen)
+    if not contained and any(request.contained for request in choice.requests):
+        raise RequestError(
+            "verb",
+            "nobody was observed putting something in another thing; say 'on' for what "
+            f"{recorded.capture.name!r} does",
+        )
     sides = {next(iter(each.sides)) for each in choice.requests if len(each.sides) == 1}
     side = hand or (sides.pop() if len(sides) == 1 else None)
     source = by_hand(recorded, side) if side else recorded
@@ -300,19 +303,6 @@ def _cast(choice: Choice, source: Source, scene: Scene) -> tuple[Cast, dict[str,
             )
         parts[name] = order[0]
     return parts, goals
-
-
-def _check_place(request: Request, source: Source) -> None:
-    """In an object is another place than on it."""
-    if not request.contained:
-        return
-    seen = (p for each in source.observation.segments for p in each.prepositions)
-    if not any(word == "in" and moved in source.paths for word, moved, _ in seen):
-        raise RequestError(
-            "verb",
-            f"nobody was observed putting something in another thing; say 'on' for what "
-            f"{source.capture.name!r} does",
-        )
 
 
 def _check_side(request: Request, step: Step, source: Source) -> None:
