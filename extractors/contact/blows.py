@@ -179,9 +179,8 @@ def settled_ends(
 ) -> Interval:
     """The closed interval within a contact from the end of the approach to the begin of departure.
 
-    A distance of touch that was estimated has room for fingers that open, so the hand is within it
-    before it has arrived and after it has set off. It has arrived when the distance no longer
-    shrinks, and leaves when it begins to grow, faster than a body at rest moves.
+    An estimated distance has room for fingers that open. The hand has arrived when the distance no
+    longer shrinks, and leaves when it begins to grow, faster than a body at rest moves.
 
     ``apart``: distance of the points by which the two touch [m]; NaN where either is lost.
 

@@ -313,12 +313,8 @@ def screened(
 ) -> Iterator[tuple[Interval, ...]]:
     """For each meeting the intervals in which a third body is between the two.
 
-    Bodies touch if their surfaces are within a tolerance, which reaches through a thin wall. A
-    third body is between two if it touches both, and the line that joins their nearest points
-    goes through it. The line is made longer at both ends, by as much as surfaces that touch may
-    seem to cut each other. What cuts each other has nothing between, and what is between two is
-    no further from either than they are from each other: of a ball in a bowl on a floor, the floor
-    is not between the ball and the bowl, although the longer line reaches it.
+    It touches both, and the line that joins their nearest points, made longer at both ends, goes
+    through it; it is no further from either than they are from each other.
 
     ``meetings``: contacts. ``screens``: names of bodies that may be in between. ``reach_m``: by how
     much the line is made longer at either end [m].

@@ -149,12 +149,6 @@ def free_motion(
     return FreeMotion(out[:, :3], out[:, 3:], tuple(phases))
 
 
-def energy(motion: FreeMotion) -> Float[np.ndarray, "times"]:
-    """Kinetic and potential energy of each kilogram [J/kg]."""
-    pace = np.sum(motion.velocities**2, axis=1)
-    return np.asarray(0.5 * pace + GRAVITY_MPS2 * motion.positions[:, 2])
-
-
 def _bearing(state: State, half: Vector, surfaces: Sequence[Surface]) -> Surface | None:
     """What the thing is on; None where it is in the air."""
     for surface in surfaces:

@@ -129,10 +129,7 @@ def beginning_s(track: Growth, earliest_s: float, latest_s: float) -> float:
     Volinsky 1999). The mean moves little when noise, or a frame more or less, changes which one is
     the likeliest. The farther the way is from every profile, as that of what wobbles is, the less
     far back it is followed: by as many times less as what is left is larger than noise (reduced
-    chi-squared).
-
-    ``track``: the displacement, from the place before on. ``earliest_s``: no earlier than this,
-    which is not after 0. ``latest_s``: no later than this, which is not before 0.
+    chi-squared). Neither limit excludes 0.
     """
     if earliest_s >= latest_s:
         return latest_s
@@ -324,12 +321,9 @@ def motion_edges(
 ) -> Interval:
     """The interval of a motion, from when the object left one place to when it was at another.
 
-    A motion is recognised by a displacement that no handling without it makes; once recognised, it
-    began when the object was last where it had rested, and ended when it first was where it
-    rests afterwards: within what noise alone makes, and at least a hair's width. What passed
-    before it was that far follows from how it grew (``onset``). What takes longer to the floor than
-    motion at the slowest does, drifts until then. What was nudged or wobbled, and for the least
-    duration of a rest went no farther away, sets off from there.
+    It began when the object was last where it had rested, and ended when it first was where it
+    rests afterwards, within noise and at least a hair's width; what passed before follows from how
+    it grew (``onset``). A drift is no motion, and what was nudged sets off from there.
 
     ``moved``: frames in which it is beyond the floor of motion.
     """

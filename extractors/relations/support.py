@@ -35,10 +35,7 @@ def bearing(
     bears the whole weight. Of two, each bears the share that holds a body at rest whose middle
     stands between them where the sensor nearest to it does.
 
-    What cannot be seen so: the weight that hands, a seat or a stick bear, unless the body's
-    middle is too far off its feet for them alone; pushing off and landing, whose forces exceed the
-    weight; and anything of an agent of whom not exactly two feet are tracked, or, while both are
-    down, no trunk.
+    Nothing is said where the middle is too far off the feet, two feet or a trunk are not tracked.
     """
     known = list(touches)
     for agent in capture.agents:
@@ -161,13 +158,10 @@ def rides(
 ) -> bool:
     """Whether a body is borne by another one, in a contact, and goes along when that one moves.
 
-    It is borne if it lies on it as the motion begins, or in it with its bottom below: what stands
-    between the shaft of a rake and its teeth has none below. It goes along if it stays at its
-    place on the bearer, in comparison with the bearer's own way, or in the bearer: a ball may
-    roll about in a box.
+    It lies on it as the motion begins, or in it with its bottom below, and stays at its place on
+    the bearer, compared with the bearer's own path, or in the bearer.
 
-    ``load``: the body. ``bearer``: what may bear it. ``touching``: their contact, as a closed
-    interval of frames.
+    ``touching``: their contact, as a closed interval of frames.
     """
     spans = [(max(begin, touching[0]), min(end, touching[1])) for begin, end in motions]
     return any(a < z and _goes_along(load, bearer, (a, z), thresholds) for a, z in spans)
