@@ -110,9 +110,6 @@ class Convention:
     name: str
     title: str
     source: str
-    oriented: bool
-    """Whether its files give orientations; else those of segments are derived from points."""
-
     markers: bool
     """Whether its names are those of markers on the skin, not of joints or key points."""
 
@@ -131,13 +128,8 @@ class Convention:
     units_m: tuple[float, ...] = ()
     """Units that its files are in without stating them [m]."""
 
-    whole_names: bool = False
-    """Whether prefixes up to a colon belong to its names."""
-
     def named(self, names: Iterable[str]) -> dict[str, str]:
         """The place of each name that it knows, however it is spelled, whoever's it is."""
-        if self.whole_names:
-            return {name: self.points[name] for name in names if name in self.points}
         found = matched(spellings(names), self.keys)
         return {n: self.points[known] for n, (_, known) in found.items() if known in self.points}
 
@@ -170,7 +162,6 @@ def conventions() -> Mapping[str, Convention]:
                 name,
                 row["title"],
                 row["source"],
-                oriented=row["orientations"] == "given",
                 markers=row["orientations"] == "markers",
                 points=dict(_both_sides(row["points"])),
                 weights=row.get("weights", {}),
@@ -315,16 +306,15 @@ def end_effectors(recording: Recording) -> dict[str, str]:
     In a skeleton these are the first joint of each hand, foot or head, not the fingers below it.
     """
     kinds = {name: limb_of(name) for name in recording.bodies}
-
-    def is_below(name: str, kind: str) -> bool:
-        seen = {name}
-        while (name := recording.parents.get(name, "")) and name not in seen:
-            seen.add(name)
-            if kinds.get(name) == kind:
-                return True
-        return False
-
-    return {name: kind for name, kind in kinds.items() if kind and not is_below(name, kind)}
+    out = {}
+    for name, kind in kinds.items():
+        above, seen = recording.parents.get(name, ""), {name}
+        while above and above not in seen and kinds.get(above) != kind:
+            seen.add(above)
+            above = recording.parents.get(above, "")
+        if kind and (not above or above in seen):
+            out[name] = kind
+    return out
 
 
 Spelled = Mapping[str, list[tuple[str, str]]]

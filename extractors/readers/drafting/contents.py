@@ -474,16 +474,19 @@ def limb_sensors(points: Points, names: Mapping[str, BodyName]) -> Iterator[Limb
         own = {name: each for name, each in names.items() if each.subject == subject}
         for limb, stages in STAGES.items():
             for side in ("none",) if limb == "head" else (*SIDES, "none"):
-                of_side = {n: each for n, each in own.items() if each.side == side}
-                found = _carriers(points, own if limb == "head" else of_side, stages)
-                if found is not None:
-                    gaze = None
-                    if limb == "head":
-                        group = np.stack([points[name] for name in found[0]], axis=1)
-                        cluster = arrangement("draft", {name: points[name] for name in found[0]})
-                        turns = fit_cluster(cluster, group).orientations
-                        gaze = mean_forward(turns, forwards(rightwards(points, own)))
-                    yield LimbSensor(limb, side, subject, *found, gaze)
+                of_side = own
+                if limb != "head":
+                    of_side = {n: each for n, each in own.items() if each.side == side}
+                found = _carriers(points, of_side, stages)
+                if found is None:
+                    continue
+                gaze = None
+                if limb == "head":
+                    cluster = arrangement("draft", {name: points[name] for name in found[0]})
+                    group = np.stack([points[name] for name in found[0]], axis=1)
+                    turns = fit_cluster(cluster, group).orientations
+                    gaze = mean_forward(turns, forwards(rightwards(points, own)))
+                yield LimbSensor(limb, side, subject, *found, gaze)
 
 
 def _carriers(
@@ -494,26 +497,20 @@ def _carriers(
     near: list[str] = []
     places = {name: without_side(each.place) for name, each in names.items()}
     for number, stage in enumerate(stages):
-        added = [
-            name
-            for name, each in names.items()
-            if name not in markers and (each.part in stage or places[name] in stage)
-        ]
-        markers += added
-        if number < 2:
-            near += added
+        added = [n for n, each in names.items() if each.part in stage or places[n] in stage]
+        markers += [name for name in added if name not in markers]
+        near = [*markers] if number < 2 else near
         if not near:
             continue
         counts = {name: int((~np.isnan(points[name]).any(axis=1)).sum()) for name in markers}
-        most = max(counts.values(), default=0)
-        chosen = [name for name, n in counts.items() if n and n >= SEEN_SHARE * most]
+        least = max(1.0, SEEN_SHARE * max(counts.values()))
+        chosen = [name for name, count in counts.items() if count >= least]
         for group in ([name for name in chosen if places[name] not in BENDS], chosen):
             residual_m = _residual(points, group)
             if residual_m is not None and residual_m <= LOOSE_M:
-                limit = None
-                if residual_m > RESIDUAL_M:
-                    limit = float(np.ceil(200 * STRETCH * residual_m)) / 200
-                return tuple(group), tuple(name for name in near if name in group), limit
+                limit = float(np.ceil(200 * STRETCH * residual_m)) / 200
+                own = tuple(name for name in near if name in group)
+                return tuple(group), own, limit if residual_m > RESIDUAL_M else None
     return None
 
 

@@ -86,58 +86,39 @@ def _noise(stream: Stream) -> tuple[float, float] | None:
     """
     length = max(SHORTEST, round(REST_S / float(np.median(np.diff(stream.times)))))
     starts = range(0, len(stream.times) - length + 1, max(1, length // 2))
-    windows = [slice(at, at + length) for at in starts]
-    found = [_deviation(stream, each) for each in windows if not stream.lost[each].any()]
+    found = []
+    for window in (slice(at, at + length) for at in starts):
+        if not stream.lost[window].any():
+            times, turned = stream.times[window], geometry.rotations(stream.orientations[window])
+            relative = (turned[0].inv() * turned).as_rotvec()
+            found.append((_residual(times, stream.positions[window]), _residual(times, relative)))
     if not found:
         return None
-    count = max(1, len(found) // 10)
-    places, angles = (np.sort([each[index] for each in found])[:count] for index in (0, 1))
-    return float(np.median(places)) * 1e3, float(np.degrees(np.median(angles)))
-
-
-def _deviation(stream: Stream, window: slice) -> tuple[float, float]:
-    """Root mean square distance [m] and angle [rad] of a window's poses from a smooth fit."""
-    times = stream.times[window]
-    turned = stream.orientations[window]
-    relative = geometry.rotations(turned[:1]).inv() * geometry.rotations(turned)
-    return _residual(times, stream.positions[window]), _residual(times, relative.as_rotvec())
+    place, angle = np.median(np.sort(found, axis=0)[: max(1, len(found) // 10)], axis=0)
+    return float(place) * 1e3, float(np.degrees(angle))
 
 
 def _residual(times: Float[np.ndarray, "frames"], values: Float[np.ndarray, "frames 3"]) -> float:
     """Deviation of values from a cubic in time, freed of the bias of fitting it."""
     base = np.vander((times - times.mean()) / np.ptp(times), DEGREE + 1)
     _, *rest = np.linalg.lstsq(base, values, rcond=None)
-    free = len(times) - (DEGREE + 1)
-    return float(np.sqrt(np.sum(rest[0]) / free))
+    return float(np.sqrt(np.sum(rest[0]) / (len(times) - (DEGREE + 1))))
 
 
 def near_pairs(streams: Mapping[str, Stream], count: int = 12) -> list[NearPair]:
-    """The pairs on one clock that come nearest each other, relative to how far they part."""
+    """The pairs on one clock that come nearest each other, nearest first."""
     found = []
     for first, second in combinations(sorted(streams), 2):
         one, two = streams[first], streams[second]
-        if np.array_equal(one.times, two.times):
-            pair = _near_pair(first, second, one.times, one.positions - two.positions)
-            found += [pair] if pair else []
-    ranked = sorted(found, key=lambda each: (each[0], each[1].first, each[1].second))
-    return [pair for _, pair in ranked[:count]]
-
-
-def _near_pair(
-    first: str,
-    second: str,
-    times: Float[np.ndarray, "frames"],
-    apart: Float[np.ndarray, "frames 3"],
-) -> tuple[float, NearPair] | None:
-    distance = np.linalg.norm(apart, axis=1)
-    if np.isnan(distance).all():
-        return None
-    least, most = float(np.nanmin(distance)), float(np.nanmax(distance))
-    if most - least < 0.05:
-        return None  # parts of one body
-    step = float(np.median(np.diff(times)))
-    near = float((distance <= 1.2 * least).sum() * step)
-    return least, NearPair(first, second, least, float(times[np.nanargmin(distance)]), near)
+        if not np.array_equal(one.times, two.times):
+            continue
+        distance = np.linalg.norm(one.positions - two.positions, axis=1)
+        if np.isnan(distance).all() or np.nanmax(distance) - np.nanmin(distance) < 0.05:
+            continue  # never seen together, or parts of one body
+        least, at = float(np.nanmin(distance)), int(np.nanargmin(distance))
+        near_s = float((distance <= 1.2 * least).sum() * np.median(np.diff(one.times)))
+        found.append(NearPair(first, second, least, float(one.times[at]), near_s))
+    return sorted(found, key=lambda each: (each.least_m, each.first, each.second))[:count]
 
 
 def as_json(surveys: list[StreamSurvey], pairs: list[NearPair]) -> dict[str, Any]:
