@@ -387,17 +387,14 @@ class FlockSimulator(SerialSimulator[_BirdLine]):
             if line.streaming and self._cycle % line.every == 0:
                 self._stream(line, at_s, line.every / self._rate_hz)
 
-    @property
-    def _range_inch(self) -> float:
-        return 144.0 if self.rig.erc else 72.0 if self._scaling else 36.0
-
     def _report(self, line: _BirdLine, at_s: float) -> None:
         """The records of the birds of a line, at a time."""
         if not self._configured or time.monotonic() - self._configured_s < self.rig.quiet_s:
             self._error, self._error_unit = 9, line.unit
             return
         positions, orientations = self._poses(at_s)
-        scaling, share = Scaling(self._range_inch), self._faults.wrong_address_share
+        scaling = Scaling(144.0 if self.rig.erc else 72.0 if self._scaling else 36.0)
+        share = self._faults.wrong_address_share
         on_line = self._addresses if self._group else (line.unit,)
         for address in [each for each in on_line if each in self._addresses]:
             index, form = self._addresses.index(address), self._forms[address]

@@ -232,7 +232,21 @@ def write_bundle(
         UnknownNameError: A mount is of no sensor.
     """
     folder = Path(folder)
-    _check(recording, folder, mounts or {})
+    description = recording.description
+    for name in mounts or {}:
+        if name not in description.sensors:
+            raise UnknownNameError("sensor", name, description.sensors, where=recording.address)
+    if not description.has_positions or not description.has_orientations:
+        raise FileError(
+            folder,
+            "a capture needs positions and orientations, and the recording lacks one of them.",
+            "Record with format=pos_quat.",
+        )
+    if len(recording.host_s) < 2:
+        frames = len(recording.host_s)
+        raise FileError(folder, f"the recording has {frames} frames; a capture has at least two.")
+    if folder.exists():
+        raise FileError(folder, "exists already.", "Bundles are never overwritten.")
     times = frame_times(recording)
     later = np.maximum.accumulate(np.append(-np.inf, times[:-1]))
     kept = np.flatnonzero(times > later)
@@ -249,24 +263,6 @@ def write_bundle(
         raise FileError(folder, f"cannot be written: {error}.") from None
     finally:
         shutil.rmtree(made, ignore_errors=True)
-
-
-def _check(recording: Recording, folder: Path, mounts: Mapping[str, Mount]) -> None:
-    description = recording.description
-    for name in mounts:
-        if name not in description.sensors:
-            raise UnknownNameError("sensor", name, description.sensors, where=recording.address)
-    if not description.has_positions or not description.has_orientations:
-        raise FileError(
-            folder,
-            "a capture needs positions and orientations, and the recording lacks one of them.",
-            "Record with format=pos_quat.",
-        )
-    if len(recording.host_s) < 2:
-        frames = len(recording.host_s)
-        raise FileError(folder, f"the recording has {frames} frames; a capture has at least two.")
-    if folder.exists():
-        raise FileError(folder, "exists already.", "Bundles are never overwritten.")
 
 
 def _write_table(path: Path, recording: Recording, times: np.ndarray, kept: np.ndarray) -> None:

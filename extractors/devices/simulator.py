@@ -262,10 +262,12 @@ class SimulatedLine:
         self._faults = faults
         self.handle = -1
         self._slave = -1
-        self._queue = bytearray()
-        self._sent_until_s = 0.0
-        self._folder = tempfile.TemporaryDirectory(prefix="capar-simulated-")
-        self.path = str(Path(self._folder.name) / "port")
+        self.queue = bytearray()
+        self.sent_until_s = 0.0
+        """When what was queued before has gone out [s]."""
+
+        self.folder = tempfile.TemporaryDirectory(prefix="capar-simulated-")
+        self.path = str(Path(self.folder.name) / "port")
         """The device file; it stays the same when the plug is pulled."""
 
         self.random = random.Random(faults.seed)
@@ -278,12 +280,7 @@ class SimulatedLine:
     @property
     def busy(self) -> bool:
         """Whether something is queued, or a poll is to be answered."""
-        return bool(self._queue) or self.poll_at_s >= 0.0
-
-    @property
-    def free_at_s(self) -> float:
-        """When what is queued will have gone out [s]."""
-        return self._sent_until_s + len(self._queue) * BYTE_S
+        return bool(self.queue) or self.poll_at_s >= 0.0
 
     def plug(self) -> None:
         """Make the device file, raw from the start."""
@@ -291,7 +288,7 @@ class SimulatedLine:
         tty.setraw(self._slave)
         os.set_blocking(self.handle, False)
         Path(self.path).symlink_to(os.ttyname(self._slave))
-        self._queue.clear()
+        self.queue.clear()
 
     def unplug(self) -> None:
         """Pull the plug: the other end fails, and the device file is gone."""
@@ -300,7 +297,7 @@ class SimulatedLine:
             if handle >= 0:
                 os.close(handle)
         self.handle = self._slave = -1
-        self._queue.clear()
+        self.queue.clear()
         self.commands.clear()
 
     def receive(self) -> bytes:
@@ -313,40 +310,32 @@ class SimulatedLine:
 
     def send(self, data: bytes, at_s: float) -> bool:
         """Queue bytes that the device has at a moment [s]; whether all go out as they are."""
-        if not self._queue:
-            self._sent_until_s = max(self._sent_until_s, at_s)
+        if not self.queue:
+            self.sent_until_s = max(self.sent_until_s, at_s)
         spoilt = bytearray()
         for byte in data:
             if self.random.random() < self._faults.lost_share:
                 continue
             garbled = self.random.random() < self._faults.garbled_share
             spoilt.append(byte ^ 1 << self.random.randrange(8) if garbled else byte)
-        self._queue += spoilt
+        self.queue += spoilt
         return bytes(spoilt) == data
 
     def pump(self, now_s: float) -> None:
         """Let out the bytes that the line's speed has carried by now."""
-        due = min(len(self._queue), int((now_s - self._sent_until_s) / BYTE_S))
+        due = min(len(self.queue), int((now_s - self.sent_until_s) / BYTE_S))
         if due <= 0:
             return
         try:
-            written = os.write(self.handle, self._queue[:due])
+            written = os.write(self.handle, self.queue[:due])
         except OSError:  # nobody reads: what the port cannot hold is overrun
             written = due
-        del self._queue[:written]
-        self._sent_until_s += written * BYTE_S
-
-    def hold(self, held_up_s: float) -> None:
-        """Carry nothing for so long [s]."""
-        self._sent_until_s += held_up_s
+        del self.queue[:written]
+        self.sent_until_s += written * BYTE_S
 
     def forget(self) -> None:
         """Drop what is queued."""
-        self._queue.clear()
-
-    def close(self) -> None:
-        """Remove the device file for good."""
-        self._folder.cleanup()
+        self.queue.clear()
 
 
 Line = TypeVar("Line", bound=SimulatedLine)
@@ -378,7 +367,7 @@ class SerialSimulator(Simulator, Generic[Line]):
         """End, and remove the device files."""
         super().__exit__()
         for line in self._lines:
-            line.close()
+            line.folder.cleanup()
 
     def _plug(self) -> None:
         self._power_up()
@@ -392,7 +381,7 @@ class SerialSimulator(Simulator, Generic[Line]):
     def _stand_still(self, held_up_s: float) -> None:
         super()._stand_still(held_up_s)
         for line in self._lines:
-            line.hold(held_up_s)
+            line.sent_until_s += held_up_s
 
     def _handles(self) -> list[int]:
         return [line.handle for line in self._lines if line.handle >= 0]
@@ -413,7 +402,7 @@ class SerialSimulator(Simulator, Generic[Line]):
 
     def _stream(self, line: Line, at_s: float, period_s: float) -> None:
         """Report a cycle, if the line has room for it."""
-        if line.handle >= 0 and line.free_at_s - at_s > period_s:
+        if line.handle >= 0 and line.sent_until_s + len(line.queue) * BYTE_S - at_s > period_s:
             self.skipped += 1
         elif line.handle >= 0:
             self._report(line, at_s)

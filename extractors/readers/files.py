@@ -45,20 +45,28 @@ def neighbours(path: Path) -> str:
     return f"The folder holds: {', '.join(names[:12]) or 'nothing'}{', ...' * (len(names) > 12)}."
 
 
-def head_of(path: Path) -> bytes:
-    """The first bytes of a file, expanded if it is compressed."""
-    check_file(path)
-    return _read(path, HEAD, whole=False)
-
-
-def read_bytes(path: Path) -> bytes:
-    """A file's content, expanded if it is compressed.
+def read_bytes(path: Path, limit: int | None = None) -> bytes:
+    """A file's content, or so many first bytes of it, expanded if it is compressed.
 
     Raises:
         FileError: It is missing, empty, cut short, or expands beyond ``EXPANDED_LIMIT``.
     """
     check_file(path)
-    data = _read(path, EXPANDED_LIMIT + 1, whole=True)
+    wanted = EXPANDED_LIMIT + 1 if limit is None else limit
+    try:
+        with path.open("rb") as raw:
+            magic = raw.peek(6)[:6]
+            if magic.startswith(b"\x1f\x8b"):
+                data = gzip.GzipFile(fileobj=raw).read(wanted)
+            else:
+                is_xz = magic.startswith(b"\xfd7zXZ\x00")
+                data = (lzma.LZMAFile(raw) if is_xz else raw).read(wanted)  # noqa: SIM115
+    except PermissionError as error:
+        what = f"cannot be read: {error.strerror}."
+        raise FileError(path, what, "Grant yourself read permission.") from error
+    except _DAMAGE as error:
+        hint = "Copy it again." if limit is None else "It seems compressed, and damaged."
+        raise FileError(path, f"cannot be read to its end: {error}.", hint) from error
     if len(data) > EXPANDED_LIMIT:
         raise FileError(path, f"expands to more than {EXPANDED_LIMIT >> 20} MiB.", "Split it.")
     return data
@@ -104,21 +112,6 @@ def check_zip(path: Path, limit: int = EXPANDED_LIMIT) -> list[str]:
             "A motion or mesh file of that size is refused before it is expanded.",
         )
     return [each.filename for each in members]
-
-
-def _read(path: Path, limit: int, *, whole: bool) -> bytes:
-    try:
-        with path.open("rb") as raw:
-            magic = raw.peek(6)[:6]
-            if magic.startswith(b"\x1f\x8b"):
-                return gzip.GzipFile(fileobj=raw).read(limit)
-            return (lzma.LZMAFile(raw) if magic.startswith(b"\xfd7zXZ\x00") else raw).read(limit)
-    except PermissionError as error:
-        what = f"cannot be read: {error.strerror}."
-        raise FileError(path, what, "Grant yourself read permission.") from error
-    except _DAMAGE as error:
-        hint = "Copy it again." if whole else "It seems compressed, and damaged."
-        raise FileError(path, f"cannot be read to its end: {error}.", hint) from error
 
 
 _MISSING = {"", "nan", "na", "null", "none"}

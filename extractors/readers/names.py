@@ -29,19 +29,13 @@ def key_of(name: str) -> str:
     return re.sub(r"[\W_]+", "", name).lower()
 
 
-def split_name(name: str) -> tuple[str, str]:
-    """The subject before the last colon, and the rest of a name."""
-    subject, _, bare = name.rpartition(":")
-    return subject, bare
-
-
 def spellings(names: Iterable[str]) -> dict[str, list[tuple[str, str]]]:
     """For each name, the subjects and bare names that it may consist of, least taken off first.
 
     ``Anna:LASI`` is Anna's; ``Anna_LASI`` may be, if other names begin so too; ``r_knee_study`` may
     be an ``r_knee`` if others end so.
     """
-    split = {name: split_name(name) for name in names}
+    split = {name: name.rpartition(":")[::2] for name in names}
     bares = list(dict.fromkeys(bare for _, bare in split.values()))
     beginnings = _beginnings(bares)
     endings = _shared(bare[at.start() :] for bare in bares for at in re.finditer(r"[_ .\-]+", bare))
@@ -404,7 +398,7 @@ def body_names(names: Iterable[str]) -> dict[str, BodyName]:
         least = LEAST_NAMES
     worded = {}
     for name in left:
-        subject, bare = split_name(name)
+        subject, _, bare = name.rpartition(":")
         if place := _place(bare):
             exact = not any(each.isdigit() for each in bare)
             worded[name] = BodyName(name, place, exact, BY_WORDS, subject)
@@ -447,7 +441,7 @@ def computed(names: Iterable[str]) -> list[str]:
     return [
         name
         for name in names
-        if any(fnmatchcase(split_name(name)[1], pattern) for pattern in patterns)
+        if any(fnmatchcase(name.rpartition(":")[2], pattern) for pattern in patterns)
     ]
 
 

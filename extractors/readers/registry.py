@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from capar.model.errors import CaparError, CaptureError, FileError, UnknownNameError
-from extractors.readers.files import head_of
+from extractors.readers.files import HEAD, read_bytes
 from extractors.readers.formats import (
     bvh,
     c3d,
@@ -69,7 +69,7 @@ def reader_for(path: Path) -> Reader:
     Raises:
         FileError: The file is not there, is empty, or is of no known format.
     """
-    head = b"" if path.is_dir() else head_of(path)
+    head = b"" if path.is_dir() else read_bytes(path, HEAD)
     for reader in READERS:
         if reader.recognises(path, head):
             return reader

@@ -205,6 +205,7 @@ def _check_span(path: str, every: list[Float[np.ndarray, "frames 3"]], unit_m: f
 
 
 Files = Mapping[str, WorldRecording]
+Points = Mapping[str, Float[np.ndarray, "frames 3"]]
 
 
 @dataclass(frozen=True)
@@ -300,7 +301,7 @@ def _from_markers(entry: Tracked, files: Files, names: list[str], offset: RigidT
     label = str(entry.given()["name"])
     points = np.stack(list(markers.values()), axis=1)
     try:
-        cluster = _stated(entry, names) or _own_frame(entry, arrangement(label, markers))
+        cluster = _cluster(entry, markers, label)
         fit = fit_cluster(cluster, points)
         _check_fit(label, cluster, points, fit, entry.residual_m)
     except CaptureError as error:
@@ -320,21 +321,17 @@ def _from_markers(entry: Tracked, files: Files, names: list[str], offset: RigidT
     return Body(stream, frame, (wrong,) if wild.any() else (), recording.conventions)
 
 
-def _stated(entry: Tracked, names: list[str]) -> Cluster | None:
-    """The arrangement that capture.toml itself states."""
-    if entry.arrangement is None:
-        return None
-    for name in names:
-        if name not in entry.arrangement:
-            raise entry.unknown("marker", name, entry.arrangement, "arrangement")
-    return Cluster(tuple(names), np.array([entry.arrangement[name] for name in names]))
-
-
-def _own_frame(entry: Tracked, cluster: Cluster) -> Cluster:
-    """The arrangement in the frame that ``origin`` and ``axes`` state.
+def _cluster(entry: Tracked, markers: Points, label: str) -> Cluster:
+    """The arrangement that is stated, or one in the frame that ``origin`` and ``axes`` state.
 
     Of two axes from pairs of markers the first is kept, the second is made square to it.
     """
+    if entry.arrangement is not None:
+        for name in markers:
+            if name not in entry.arrangement:
+                raise entry.unknown("marker", name, entry.arrangement, "arrangement")
+        return Cluster(tuple(markers), np.array([entry.arrangement[name] for name in markers]))
+    cluster = arrangement(label, markers)
     places = dict(zip(cluster.names, cluster.local, strict=True))
     ends = [name for pair in (entry.axes or {}).values() for name in pair]
     for key, names in (("origin", entry.origin), ("axes", ends)):

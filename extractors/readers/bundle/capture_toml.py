@@ -245,8 +245,7 @@ def read_capture(place: str | Path) -> Capture:
                 *(notice for each in files.values() for notice in each.notices),
                 *bundle.notices,
                 *(notice for frame in frames for notice in frame.notices),
-                *(notice for entry in document.sensor for notice in _doubtful_kind(entry)),
-                *_gap_notices(streams),
+                *_doubts(document.sensor, streams),
             ),
             others=tuple(agents[1:]),
             conventions={name: body.conventions for name, body in bodies.items()},
@@ -399,16 +398,6 @@ def _objects(bundle: _Bundle, shapes: Mapping[str, Shape | None]) -> list[TagObj
     return [built[entry.name] for entry in bundle.objects]
 
 
-def _doubtful_kind(entry: SensorEntry) -> list[Notice]:
-    """A notice if an end-effector is almost, but not quite, one of those that rules know."""
-    stated = entry.end_effector
-    near = get_close_matches(stated.lower(), LINKS, n=1)
-    if not near or stated in LINKS:
-        return []
-    known = ", ".join(LINKS)
-    return [notice("end-effector-unknown", entry.name, stated=stated, known=known, near=near[0])]
-
-
 def _fixed_pose(entry: ObjectEntry) -> WorldPose:
     """The stated pose of an object in the world, whose z axis points up."""
     position = entry.position or []
@@ -422,8 +411,14 @@ def _fixed_pose(entry: ObjectEntry) -> WorldPose:
     return np.array(position), turn.as_quat(scalar_first=True)[0]
 
 
-def _gap_notices(streams: Mapping[str, Stream]) -> Iterator[Notice]:
-    """A notice for every interval in which a body is lost for longer than is interpolated."""
+def _doubts(sensors: Sequence[SensorEntry], streams: Mapping[str, Stream]) -> Iterator[Notice]:
+    """Notices of end-effectors that are almost known ones, and of gaps too long to interpolate."""
+    for entry in sensors:
+        stated, known = entry.end_effector, ", ".join(LINKS)
+        near = get_close_matches(stated.lower(), LINKS, n=1)
+        if near and stated not in LINKS:
+            code = "end-effector-unknown"
+            yield notice(code, entry.name, stated=stated, known=known, near=near[0])
     for name, stream in streams.items():
         times, last = stream.times, len(stream.times) - 1
         for first, end in geometry.runs(stream.lost):

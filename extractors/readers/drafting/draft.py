@@ -84,7 +84,13 @@ def draft(recordings: Sequence[Recording], folder: Path, name: str) -> str:
         path = Path(each.recording.source.path)
         key = _free_name(path.name.split(".")[0], paths)
         paths[key] = Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
-        files.append(_file(key, each, unit_m, up))
+        recording = each.recording
+        points = world_points(recording, recording.unit_m or unit_m, recording.up or up)
+        markers = {name: points[name] for name in recording.markers}
+        body = {name: known for name, known in each.body.items() if name in markers}
+        sensors = tuple(limb_sensors(markers, body))
+        rest = others(markers, body if sensors else {})
+        files.append(_File(key, recording, each.body, points, sensors, rest))
     found = [body for file in files for body in _bodies(file)]
     of_limbs = limbs(each.name for each in found if not each.fixed)
     ground = _floor(files, [name for name, limb in of_limbs.items() if limb == "foot"])
@@ -174,16 +180,6 @@ def _frame(held: Sequence[Contents]) -> tuple[float, str, list[str]]:
         step_s = min(float(np.diff(each.recording.times[:2])[0]) for each in held)
         lines.append(f"rate_hz = {1.0 / step_s:.4g}   # every stream is brought to this")
     return unit_m, up, lines
-
-
-def _file(key: str, held: Contents, unit_m: float, up: str) -> _File:
-    recording = held.recording
-    points = world_points(recording, recording.unit_m or unit_m, recording.up or up)
-    markers = {name: points[name] for name in recording.markers}
-    body = {name: each for name, each in held.body.items() if name in markers}
-    sensors = tuple(limb_sensors(markers, body))
-    rest = others(markers, body if sensors else {})
-    return _File(key, recording, held.body, points, sensors, rest)
 
 
 def _bodies(file: _File) -> Iterator[_Body]:

@@ -224,26 +224,19 @@ def line_numbers(text: str) -> dict[str, int]:
     prefix = ""
     for number, line in enumerate(text.splitlines(), 1):
         if header := _HEADER.match(line):
-            prefix = _header_path(header, counts)
+            prefix, parts = "", [part.strip().strip("\"'") for part in header.group(2).split(".")]
+            for depth, part in enumerate(parts):
+                prefix = f"{prefix}.{part}".strip(".")
+                if depth == len(parts) - 1 and header.group(1) == "[[":
+                    counts[prefix] = counts.get(prefix, -1) + 1
+                if prefix in counts:
+                    prefix = f"{prefix}.{counts[prefix]}"
             lines.setdefault(prefix, number)
             lines.setdefault(header.group(2).strip("\"'"), number)
         elif key := _KEY.match(line):
             name = key.group(1).strip("\"'")
             lines.setdefault(f"{prefix}.{name}".strip("."), number)
     return lines
-
-
-def _header_path(header: re.Match[str], counts: dict[str, int]) -> str:
-    """A header's dotted path, with the index of each array of tables in it."""
-    path = ""
-    parts = [part.strip().strip("\"'") for part in header.group(2).split(".")]
-    for depth, part in enumerate(parts):
-        path = f"{path}.{part}".strip(".")
-        if depth == len(parts) - 1 and header.group(1) == "[[":
-            counts[path] = counts.get(path, -1) + 1
-        if path in counts:
-            path = f"{path}.{counts[path]}"
-    return path
 
 
 def substituted(value: Any, replace: Mapping[str, str]) -> Any:

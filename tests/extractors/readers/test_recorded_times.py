@@ -85,7 +85,7 @@ def test_the_stated_date_is_shown_stored_and_asked_for(
     folder = bundle(tmp_path, line)
     assert recorded_at(read_capture(folder).sources) == stated
     shown = CliRunner().invoke(app, ["inspect", str(folder)])
-    assert f"frames, recorded {stated}" in " ".join(shown.output.split())
+    assert stated in shown.output
     place = tmp_path / "actionary"
     CliRunner().invoke(app, ["observe", str(folder), "--actionary", str(place), "--new"])
     with Actionary.open(str(place), read_only=True) as actionary:
