@@ -32,19 +32,17 @@ def is_right(name: str) -> bool:
     return "right_" in name
 
 
+#: Deviation of a length that somebody measured [m]: what trained observers differ by
 GIVEN_DEVIATION_M = 0.003
-"""Deviation of a length that somebody measured [m]: what trained observers differ by."""
-
 STATURES_M = (0.9, 2.3)  # statures for which estimates are made [m]
 GROWN = 18.0  # age from which on the adults' tables hold [years]
 CHILD = 9.0  # age of the children's table [years]
 
 ADULTS = {"male": "man", "female": "woman"}  # names of the adults' tables
+#: Least height of cervicale above the hips [share of stature]; 0.33 to 0.36 is usual
 LEAST_TRUNK = 0.25
-"""Least height of cervicale above the hips [share of stature]; 0.33 to 0.36 is usual."""
-
+#: Heights that rise in this order in every body
 ORDER = ("acromial_height", "cervicale_height", "eye_height", "stature")
-"""Heights that rise in this order in every body."""
 
 
 class MeasuresError(CaparError):

@@ -32,30 +32,26 @@ from extractors.readers.names import (
     recognise,
 )
 
+#: Bodies are the joints of a skeleton if a convention has so many of its places among them [1]
 LEAST_JOINTS = 0.6
-"""Bodies are the joints of a skeleton if a convention has so many of its places among them [1]."""
-
+#: A fixed object as wide as this both ways, and no thicker, is a floor [m]
 FLOOR_M, FLOOR_THICK_M = 1.5, 0.3
-"""A fixed object as wide as this both ways, and no thicker, is a floor [m]."""
-
+#: Residuals, and heights of the lower sole above the floor in the median, that are reported [m];
+#: how many names a warning lists
 FAR_M, FLOATING_M, MOST_NAMES = 0.03, 0.03, 10
-"""Residuals, and heights of the lower sole above the floor in the median, that are reported [m];
-how many names a warning lists."""
-
 TOUCHED = {"head": ("head",), **{f"{s}_foot": (f"{s}_foot", f"{s}_toes") for s in SIDES}}
+#: Parts of the body that are touched, and hands, with the segments that their surfaces are of
 HANDS = {f"{side}_hand": tuple(f"{side}_{name}" for name in HAND_SEGMENTS) for side in SIDES}
-"""Parts of the body that are touched, and hands, with the segments that their surfaces are of."""
-
+#: Surfaces of a fitted body count as touching up to this distance at least [m]: they are off by as
+#: much as its limb lengths and the places of its sensors are, some millimetres
 FITTED_M = 0.01
-"""Surfaces of a fitted body count as touching up to this distance at least [m]: they are off by as
-much as its limb lengths and the places of its sensors are, some millimetres."""
-
 _LIMBS = (("upper_arm", "forearm", "hand"), ("thigh", "foot"))
 CHAINS = [tuple(f"{side}_{part}" for part in limb) for side in SIDES for limb in _LIMBS]
 CHAINS += [("head",), ("pelvis",)]
 """What is reported as not recorded, of each chain the first part alone."""
 
 SOLES = ("right_sole", "left_sole")
+#: What is reported of a fitted body, with the remedy
 WARNINGS = {
     "far": "far from their places on the body; check their names, the unit and the measures",
     "misplaced": "markers far from the landmarks of their names; check which is which",
@@ -64,7 +60,6 @@ WARNINGS = {
     "floating": "the lower sole is above the floor; check the floor and the unit",
     "stretching": "bones change their length; check which points belong together",
 }
-"""What is reported of a fitted body, with the remedy."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,20 +12,17 @@ from capar.model import geometry
 from extractors.readers.drafting.contents import Points
 from extractors.readers.names import SIDES, BodyName, without_side
 
+#: Words by which names tell whose joint a point is; those of one finger are in order of name
 FINGERS, THUMB = ("index", "middle", "ring", "pinky", "little"), "thumb"
-"""Words by which names tell whose joint a point is; those of one finger are in order of name."""
-
+#: What names of joints of fingers are known as
 PLACES = ("hand", "fingers", "thumb", "thumb_tip", "index_knuckle", "fifth_knuckle")
-"""What names of joints of fingers are known as."""
-
 REACH_M = 0.25  # no joint of a finger is farther from the wrist than this [m]
 
+#: A thumb begins nearer to the wrist than this share of the fingers' distance [1]; else its name is
+#: another finger's
 THUMB_SHARE = 0.8
-"""A thumb begins nearer to the wrist than this share of the fingers' distance [1]; else its name is
-another finger's."""
-
+#: Where the open thumb points about the hand's long axis, from forwards to the palm [rad]
 THUMB_AHEAD = float(np.arctan2(0.15, 0.45))
-"""Where the open thumb points about the hand's long axis, from forwards to the palm [rad]."""
 
 
 def closed_hands(

@@ -10,11 +10,10 @@ from capar.model import geometry
 EYES = ("right_pupil", "left_pupil")
 LOOK_COST = 4.0  # weight of a radian that a line of sight misses its point by
 
+#: Weight of a radian of each part that turns with the gaze: what costs more turns less
 SHARES = {"eye": 0.045, "head": 0.05, "neck": 0.05, "thorax": 0.7, "lumbar": 1.0}
-"""Weight of a radian of each part that turns with the gaze: what costs more turns less."""
-
+#: Likewise of the legs, which do not take part and keep standing
 STANCE = {"hip": 1.0, "knee": 1.0, "ankle": 1.0}
-"""Likewise of the legs, which do not take part and keep standing."""
 
 
 def look_tasks() -> dict[str, mink.LookAtTask]:

@@ -16,9 +16,8 @@ from capar.body.skeleton import Segment, eyes_between, inertias, skeleton
 from capar.model import geometry
 from capar.model.errors import CaparError, UnknownNameError
 
+#: Name of the free joint, and numbers of a posture that place the pelvis: x y z [m] and w x y z
 ROOT, ROOT_SIZE = "root", 7
-"""Name of the free joint, and numbers of a posture that place the pelvis: x y z [m] and w x y z."""
-
 ARMATURE = 0.01  # added inertia of a hinge [kg m2], for simulations that step the model
 
 _KINDS = {

@@ -15,22 +15,16 @@ from capar.body.human import Human
 from capar.body.shapes import segment_surface
 from extractors.readers.names import SIDES, parts, without_side
 
+#: A solver whose steps have become shorter has found what there is to find [rad]
 SHORTEST_RAD = 1e-3
-"""A solver whose steps have become shorter has found what there is to find [rad]."""
-
-
+#: A foot stands flat while each of its points is no higher above its own lowest place [m]
 FLAT_M = 0.02
-"""A foot stands flat while each of its points is no higher above its own lowest place [m]."""
-
+#: Share of the frames of which the highest is taken for a point's lowest place [1]
 LOWEST_SHARE = 0.05
-"""Share of the frames of which the highest is taken for a point's lowest place [1]."""
-
+#: What of a foot is no higher than this above its lowest place bears weight [m] (estimate)
 SOLE_M = 0.01
-"""What of a foot is no higher than this above its lowest place bears weight [m] (estimate)."""
-
+#: How far inside the edge of the base of support the centre of mass is kept [m] (estimate)
 MARGIN_M = 0.015
-"""How far inside the edge of the base of support the centre of mass is kept [m] (estimate)."""
-
 EDGE_COST = 100.0  # weight of a metre of the centre of mass beyond that margin
 
 Points = Mapping[str, Float[np.ndarray, "frames 3"]]

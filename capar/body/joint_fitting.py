@@ -31,20 +31,17 @@ from capar.model import geometry
 from extractors.readers.drafting.contents import Points
 from extractors.readers.names import SIDES, BodyName, Convention, parts, without_side
 
+#: Name of a point that is put before the head where the face looks, and how far before [m]
 FACE, FACE_M = "face", 0.2
-"""Name of a point that is put before the head where the face looks, and how far before [m]."""
-
+#: Points are rigid together if they stay so near to a common shape (root mean square) [m]
 RIGID_M = 0.01
-"""Points are rigid together if they stay so near to a common shape (root mean square) [m]."""
-
+#: So many points of a part at least tell how it is turned; of a face two, its joint and where it
+#: looks
 LEAST_POINTS = 3
-"""So many points of a part at least tell how it is turned; of a face two, its joint and where it
-looks."""
-
+#: Weight of the head's joint, its top and the thumb against eyes, face and knuckles [1]: skeletons
+#: have them at different places
 JOINT_WEIGHT = 0.1
-"""Weight of the head's joint, its top and the thumb against eyes, face and knuckles [1]: skeletons
-have them at different places."""
-
+#: By segment, the places whose points are rigid with it
 RIGID_PARTS = {
     **{
         f"{side}_hand": tuple(
@@ -55,22 +52,17 @@ RIGID_PARTS = {
     },
     "head": ("head", "head_top", "right_eye", "left_eye", FACE),
 }
-"""By segment, the places whose points are rigid with it."""
-
+#: Joints that are at the same place in every skeleton
 SHARED = {"upper_arm", "forearm", "hand", "thigh", "shank", "foot", "fingers", "thumb_tip"}
-"""Joints that are at the same place in every skeleton."""
-
+#: How much places on the hand count, and joints of the spine once their places are known [1]
 WEIGHTS = {
     "index_knuckle": 0.5, "fingers": 0.5, "fifth_knuckle": 0.5, "thumb_tip": 0.2,
     "pelvis": 1.0, "lumbar_lower": 1.0, "lumbar_upper": 1.0, "thorax_lower": 1.0,
     "thorax_upper": 1.0,
 }  # fmt: skip
-"""How much places on the hand count, and joints of the spine once their places are known [1]."""
-
+#: How much the head's joint counts where eyes are seen, and how much of their weight necks and
+#: heads have before it is known where on the body theirs are [1]
 HEAD_BY_EYES, EARLY_SHARE = 0.3, 0.1
-"""How much the head's joint counts where eyes are seen, and how much of their weight necks and
-heads have before it is known where on the body theirs are [1]."""
-
 SPINE_M = 0.05  # how far from the axis of its segment a joint of the spine may be [m]
 ROUNDS = 3  # times that places are found anew from postures
 

@@ -33,26 +33,23 @@ from capar.body.skeleton import skeleton
 from extractors.readers.drafting.contents import Points, mean_of, standing_by_parts
 from extractors.readers.names import SIDES, BodyName
 
+#: Markers at known places that place a body at least, those on a segment that tell where its middle
+#: is, and those that tell how it is placed and turned
 LEAST_EXACT, LEAST_CLUSTER, LEAST_MARKERS = 6, 2, 3
-"""Markers at known places that place a body at least, those on a segment that tell where its middle
-is, and those that tell how it is placed and turned."""
-
+#: Frames in which markers on both sides of a joint are seen at least; and the weight of a first
+#: fit's centre against one frame's motion [1]: skin moves by half a centimetre or so, while first
+#: fits miss joints by about five
 LEAST_FRAMES, TRUST = 10, 0.1
-"""Frames in which markers on both sides of a joint are seen at least; and the weight of a first
-fit's centre against one frame's motion [1]: skin moves by half a centimetre or so, while first fits
-miss joints by about five."""
-
 ROUNDS = 2  # times that the places of markers are found anew from postures, and postures from them
 
+#: Weights of the middle of a segment by the markers on it, and of markers whose places are found
+#: from the motion itself [1]; so many of these on a segment weigh as much as more of them together:
+#: a shoulder blade with a dozen markers would else bend the chest that it glides on
 MIDDLE_WEIGHT, CLUSTER_WEIGHT, LARGE_CLUSTER = 0.2, 0.7, 4
-"""Weights of the middle of a segment by the markers on it, and of markers whose places are found
-from the motion itself [1]; so many of these on a segment weigh as much as more of them together: a
-shoulder blade with a dozen markers would else bend the chest that it glides on."""
-
+#: How much more than usual the standing posture counts until markers of unknown places have found
+#: theirs [1]: which way a segment is turned only they tell
 CLUSTER_EASE = 20.0
-"""How much more than usual the standing posture counts until markers of unknown places have found
-theirs [1]: which way a segment is turned only they tell."""
-
+#: Pairs of places, of one side, between which a measure lies; the first that is there counts
 SPANS: Mapping[str, tuple[tuple[str, str], ...]] = {
     "upper_arm": (("upper_arm", "forearm"), ("acromion", "elbow_lateral")),
     "forearm": (("forearm", "hand"), ("elbow_lateral", "wrist_radial")),
@@ -61,14 +58,12 @@ SPANS: Mapping[str, tuple[tuple[str, str], ...]] = {
     "foot_length": (("heel", "toe_tip"),),
     "foot_breadth": (("first_metatarsal", "fifth_metatarsal"),),
 }
-"""Pairs of places, of one side, between which a measure lies; the first that is there counts."""
-
+#: Places whose distance between the sides goes with a measure
 BREADTHS: Mapping[str, tuple[str, ...]] = {
     "shoulder_breadth": ("upper_arm", "acromion"),
     "spine_breadth": ("thigh", "asis"),
 }
-"""Places whose distance between the sides goes with a measure."""
-
+#: Segments of limbs with the one that they hang on; that of an arm is the chest
 PARENTS = {
     f"{side}_{child}": parent if parent in ("pelvis", "thorax_upper") else f"{side}_{parent}"
     for side in SIDES
@@ -77,13 +72,10 @@ PARENTS = {
         ("upper_arm", "thorax_upper"),
     )
 }  # fmt: skip
-"""Segments of limbs with the one that they hang on; that of an arm is the chest."""
-
+#: Segments of legs, whose measures have their names, each with the one that hangs on it
 LEGS = {"thigh": "shank", "shank": "foot"}
-"""Segments of legs, whose measures have their names, each with the one that hangs on it."""
-
+#: A measure is taken from markers if it is between these shares of the estimated one [1]
 USUAL_SHARE = (0.8, 1.25)
-"""A measure is taken from markers if it is between these shares of the estimated one [1]."""
 
 
 def fit_markers(
@@ -187,8 +179,8 @@ def _joints(
     return out
 
 
+#: Markers on one segment as a rigid body: frames in which all are seen, and its poses in these
 Cluster = tuple[Bool[np.ndarray, "frames"], RigidTransform]
-"""Markers on one segment as a rigid body: frames in which all are seen, and its poses in these."""
 
 
 def cluster_of(points: Sequence[Float[np.ndarray, "frames 3"]]) -> Cluster | None:

@@ -23,34 +23,28 @@ from capar.body.scripts import (
     turned_about,
 )
 
+#: Weights of a metre and of a radian at the palms, of a metre and a radian at the feet, and of a
+#: metre of the centre of mass from above the feet
 PALM_COST, FOOT_COST, BALANCE_COST = (20.0, 4.0), 60.0, 2.0
-"""Weights of a metre and of a radian at the palms, of a metre and a radian at the feet, and of a
-metre of the centre of mass from above the feet."""
-
+#: How somebody stands at ease [degrees]
 RELAXED = {"elbow_flexion": 12.0, "shoulder_abduction": 6.0, "knee_flexion": 2.0}
-"""How somebody stands at ease [degrees]."""
-
+#: How long the gaze goes ahead of the hand (Land & Hayhoe 2001: up to half a second), and how long
+#: a shift of gaze takes, the head's share included [s]
 LEAD_S, SHIFT_S = 0.2, 0.3
-"""How long the gaze goes ahead of the hand (Land & Hayhoe 2001: up to half a second), and how long
-a shift of gaze takes, the head's share included [s]."""
-
+#: How far next to and above the straight path a hand comes to an object from outside [m]
 STANDOFF_M, RISE_M = 0.07, 0.13
-"""How far next to and above the straight path a hand comes to an object from outside [m]."""
-
 UP, OVER = 0.6, 0.75  # shares of a reach in which the hand rises, and in which it goes forward [1]
 
+#: How long it takes after a drink until the head is free again, in the next phase, and how long a
+#: hand swings on that let go of what it throws [s]
 RELEASE_S, FOLLOW_S = 0.48, 0.12
-"""How long it takes after a drink until the head is free again, in the next phase, and how long a
-hand swings on that let go of what it throws [s]."""
-
+#: Of inverse kinematics for a frame, and for a grip that is tried
 ITERATIONS, GRIP_ITERATIONS = 3, 20
-"""Of inverse kinematics for a frame, and for a grip that is tried."""
-
 RATE_HZ = 103.3  # of the thesis's tracker (thesis 3.1) [Hz]
 
+#: A palm further than the one from where it is to be cannot reach it; one nearer than the other to
+#: its grip touches the object [m]
 REACH_TOLERANCE_M, TOUCH_M = 0.003, 0.003
-"""A palm further than the one from where it is to be cannot reach it; one nearer than the other to
-its grip touches the object [m]."""
 
 
 class PerformanceError(SceneError):
@@ -85,8 +79,8 @@ class Role:
     heading: float = 0.0  #: Which way it faces, from x towards y [rad]
 
 
+#: Posture, poses of objects, point looked at [m], and how far palms miss their goals [m]
 Frame = tuple[np.ndarray, dict[str, RigidTransform], np.ndarray, dict[str, float]]
-"""Posture, poses of objects, point looked at [m], and how far palms miss their goals [m]."""
 
 
 def perform(

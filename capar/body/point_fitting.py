@@ -17,64 +17,52 @@ from capar.model.errors import CaparError
 from extractors.readers.drafting.contents import Points
 from extractors.readers.names import SIDES, BodyName, parts, without_side
 
+#: Where the search begins [rad]: a straight limb does not tell which way it bends
 BENT = {"elbow_flexion": 0.4, "knee_flexion": 0.1, "hip_flexion": 0.05}
-"""Where the search begins [rad]: a straight limb does not tell which way it bends."""
-
+#: What names of hinges of spine, neck and shoulder girdle begin with, without their side
 SPINE = ("lumbar", "thorax", "neck", "head", "clavicle")
-"""What names of hinges of spine, neck and shoulder girdle begin with, without their side."""
-
+#: Weights of a metre between a point and its place; of a radian away from standing, and of a hinge
+#: of the spine, where few points see so many hinges; of a step: points slightly out of reach would
+#: throw a straight limb about
 POINT_COST, EASE_COST, SPINE_EASE_COST, DAMPING_COST = 10.0, 0.05, 0.5, 0.3
-"""Weights of a metre between a point and its place; of a radian away from standing, and of a hinge
-of the spine, where few points see so many hinges; of a step: points slightly out of reach would
-throw a straight limb about."""
-
+#: Weights of a radian of a foot's tilt while it stands flat, of a metre of its sole's height above
+#: the ground, and of a metre by which a heel or toes are in the ground
 FLAT_COST, SOLE_COST, GROUND_COST = 2.0, 5.0, 20.0
-"""Weights of a radian of a foot's tilt while it stands flat, of a metre of its sole's height above
-the ground, and of a metre by which a heel or toes are in the ground."""
-
+#: Weights where no leg is seen of a radian of tilt of pelvis and feet and of a metre of a foot from
+#: where it stands; of a radian by which an unseen arm does not hang straight down
 STANCE_COST, PLANTED_COST, HANGING_COST = 0.3, 0.5, 0.5
-"""Weights where no leg is seen of a radian of tilt of pelvis and feet and of a metre of a foot from
-where it stands; of a radian by which an unseen arm does not hang straight down."""
-
+#: Weights of a radian between the face and where it looks, and of tilt of an unseen head
 FACE_COST, HEAD_COST = 3.0, 1.5
-"""Weights of a radian between the face and where it looks, and of tilt of an unseen head."""
-
+#: Places that keep above the ground by a share of their height above the sole [1]: a foot that
+#: rolls over its heel or toes has them nearer to it
 SOLE_PLACES, SOLE_SHARE = ("heel", "second_metatarsal", "toe_tip"), 0.7
-"""Places that keep above the ground by a share of their height above the sole [1]: a foot that
-rolls over its heel or toes has them nearer to it."""
-
 ROAMING_M = 0.5  # who goes further than this on unseen legs is not taken to stand on one spot [m]
 
+#: Iterations for the first frame and for the others; how many places fit a body at least
 SETTLING, ITERATIONS, LEAST_PLACES = 80, 3, 4
-"""Iterations for the first frame and for the others; how many places fit a body at least."""
-
+#: The two joints, of either side, that a limb's length lies between
 LENGTHS = {
     "upper_arm": ("upper_arm", "forearm"),
     "forearm": ("forearm", "hand"),
     "thigh": ("thigh", "shank"),
     "shank": ("shank", "foot"),
 }
-"""The two joints, of either side, that a limb's length lies between."""
-
+#: The paired joint, and the share of the measure that lies between its two sides
 BREADTHS = {
     "shoulder_breadth": ("upper_arm", SHOULDER_BREADTH),
     "spine_breadth": ("thigh", 2 * HIP_OF_SPINES),
 }
-"""The paired joint, and the share of the measure that lies between its two sides."""
-
+#: Paired joints at the lower and upper end of the trunk; and paired landmarks, over which the skin
+#: moves much, where nothing else shows its length
 TRUNK, TRUNK_OF_LANDMARKS = ("thigh", "upper_arm"), ("asis", "acromion")
-"""Paired joints at the lower and upper end of the trunk; and paired landmarks, over which the skin
-moves much, where nothing else shows its length."""
-
+#: Weight of a trunk's length as it is seen against that by stature [1]: shoulders rise and fall by
+#: as much as trunks of one stature differ
 TRUNK_TRUST = 0.5
-"""Weight of a trunk's length as it is seen against that by stature [1]: shoulders rise and fall by
-as much as trunks of one stature differ."""
-
 TRUNK_HEIGHTS = ("acromial_height", "suprasternale_height", "cervicale_height")
 UPPER_HEIGHTS = ("eye_height", "stature")
+#: Ankles are taken to be as high as they are seen if that is between these shares of the usual
+#: height [1]: soles of shoes raise them, and skeletons have them somewhere between heel and shank
 ANKLE_SHARE = (0.6, 1.7)
-"""Ankles are taken to be as high as they are seen if that is between these shares of the usual
-height [1]: soles of shoes raise them, and skeletons have them somewhere between heel and shank."""
 
 
 class SkeletonError(CaparError):
@@ -225,9 +213,7 @@ def _unseen(human: Human, segments: Collection[str], guidance: Guidance) -> list
 
 
 def _stance(
-    human: Human,
-    start: Float[np.ndarray, "posture"],
-    targets: Float[np.ndarray, "frames points 3"],
+    human: Human, start: Float[np.ndarray, "posture"], targets: Float[np.ndarray, "frames points 3"]
 ) -> list[mink.Task]:
     """Tasks of a body of whose legs nothing is seen: pelvis upright, feet flat as at first.
 
@@ -310,9 +296,7 @@ def measures_from_points(
 
 
 def trunk_share(
-    places: Mapping[str, Float[np.ndarray, "frames 3"]],
-    body: Human,
-    ends: tuple[str, str] = TRUNK,
+    places: Mapping[str, Float[np.ndarray, "frames 3"]], body: Human, ends: tuple[str, str] = TRUNK
 ) -> float | None:
     """Likely length of a trunk as a share of that of a body of its stature [1]; None if not seen.
 
@@ -387,11 +371,11 @@ def _apart(first: np.ndarray, second: np.ndarray) -> float:
 
 SAMPLES = 60  # frames by which sizes and places of markers are found
 
+#: Places of the middle of the body, which need no side
 MIDDLE = {
     "c7", "t10", "sternum_top", "sternum_low", "sacrum", "head_top", "head", "neck", "pelvis",
     "nose", "thorax_upper", "thorax_lower", "lumbar_upper", "lumbar_lower",
 }  # fmt: skip
-"""Places of the middle of the body, which need no side."""
 
 
 def is_sided(each: BodyName) -> bool:
@@ -429,9 +413,7 @@ def local_places(
 
 
 def with_markers(
-    measures: Measures,
-    local: Mapping[str, Float[np.ndarray, "3"]],
-    names: Mapping[str, BodyName],
+    measures: Measures, local: Mapping[str, Float[np.ndarray, "3"]], names: Mapping[str, BodyName]
 ) -> Human:
     """The body with a site for every marker, ``marker_<name>``."""
     plain = Human.of(measures)

@@ -16,9 +16,8 @@ from capar.body.skeleton import skeleton
 from capar.model import geometry
 from capar.model.capture import Agent, Capture, Role, Sensor, Stream, TagObject, TagType
 
+#: What a hand's surface consists of; the thumb is left out, as it moves against them
 HAND_SEGMENTS = ("hand", "fingers", "fingertips")
-"""What a hand's surface consists of; the thumb is left out, as it moves against them."""
-
 LINKS = {"hand": "arm", "foot": "leg", "head": "neck"}
 
 

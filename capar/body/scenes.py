@@ -15,26 +15,22 @@ from capar.body.shapes import PALM, PALM_FROM_WRIST
 from capar.model.capture import Shape, TagType
 from capar.model.errors import CaparError, UnknownNameError
 
+#: How thick, wide and high a cupboard door is, how far its hinge is to the left of where it is
+#: pushed, and how thick the posts next to it are [m]
 LEAF_M, HINGE_M, JAMB_M = (0.04, 0.60, 0.50), 0.42, 0.06
-"""How thick, wide and high a cupboard door is, how far its hinge is to the left of where it is
-pushed, and how thick the posts next to it are [m]."""
-
+#: How deep, wide and high a drawer is, and how thick the boards of its chest are [m]
 DRAWER_M, BOARD_M = (0.36, 0.30, 0.12), 0.02
-"""How deep, wide and high a drawer is, and how thick the boards of its chest are [m]."""
-
 GAP_M = 0.003  # between what moves and what guides it [m]
 
+#: What is left between palm and object, so that surfaces touch and do not cut; how far a hand at an
+#: object's side stays above what that stands on; how far the wrist of a hand at a box's side is out
+#: of the box, and with it the forearm [m]
 AIR_M, CLEAR_M, WRIST_OUT_M = 0.0005, 0.014, 0.022
-"""What is left between palm and object, so that surfaces touch and do not cut; how far a hand at an
-object's side stays above what that stands on; how far the wrist of a hand at a box's side is out of
-the box, and with it the forearm [m]."""
-
+#: Directions of the fingers tried on a round object, outwards positive [rad]
 YAWS = (0.0, -0.35, -0.7, -1.05, 0.35)
-"""Directions of the fingers tried on a round object, outwards positive [rad]."""
-
+#: How far the fingers on an object's near side lean outwards from upright, and how far they rise
+#: above the level at its side [rad]
 ROLLS, PITCHES = (0.0, 0.7, 1.2, 1.4, 1.57), (0.25, 0.5)
-"""How far the fingers on an object's near side lean outwards from upright, and how far they rise
-above the level at its side [rad]."""
 
 
 class SceneError(CaparError):
@@ -169,8 +165,7 @@ def drawer_scene(tall_m: float) -> Scene:
 
 
 def _boxes(
-    parts: Sequence[tuple[tuple[float, float, float], tuple[float, float, float]]],
-    description: str,
+    parts: Sequence[tuple[tuple[float, float, float], tuple[float, float, float]]], description: str
 ) -> Shape:
     """Boxes of some sizes with their middles somewhere, as one shape [m]."""
     vertices, faces = [], []

@@ -39,13 +39,11 @@ from capar.body.sensors import PERFECT, Tracker
 from capar.model.capture import Capture, TagType
 from capar.model.errors import UnknownNameError
 
+#: How far the crate that is pushed is turned [rad]: straight ahead is at the wrist's limit
 ASKEW = 0.8
-"""How far the crate that is pushed is turned [rad]: straight ahead is at the wrist's limit."""
-
+#: Height of the table above which is thrown, unless hips are lower, and how far above a table a mug
+#: is handed over [m]
 TOSS_TABLE_M, OFFER_M = 0.8073, 0.12
-"""Height of the table above which is thrown, unless hips are lower, and how far above a table a mug
-is handed over [m]."""
-
 TURNED = Move(turn=(0.0, 0.0, float(np.radians(40.0))))
 SWUNG = Move(turn=(0.0, 0.0, float(np.radians(32.0))), about=(0.0, HINGE_M, 0.0))
 PUSHED = Move((0.15 * np.cos(ASKEW), 0.15 * np.sin(ASKEW), 0.0))
@@ -92,6 +90,8 @@ POUR: list[Step] = [
     ("release", 0.4, None),
 ]
 
+#: Each has the objects of its own scene. Those of thesis 5.2 are ``sip`` (DrinkFromMug), ``touch``
+#: (TouchCycle), ``touch_from_rest``, ``slide`` (SlideObject) and ``pick_up`` (PickUpWithBothHands)
 ACTIONS: dict[str, Script] = {
     "drink": drink("mug"),
     "sip": sip("mug"),
@@ -110,9 +110,6 @@ ACTIONS: dict[str, Script] = {
     "wipe": handling("sponge", [TOUCH, *STROKES, ("hold", 0.4, None)], grip="top"),
     "toss": toss("mug"),
 }
-"""Each has the objects of its own scene. Those of thesis 5.2 are ``sip`` (DrinkFromMug), ``touch``
-(TouchCycle), ``touch_from_rest``, ``slide`` (SlideObject) and ``pick_up`` (PickUpWithBothHands)."""
-
 JOINT_ACTIONS = ("hand_over",)  # those of two bodies
 
 

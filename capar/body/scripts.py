@@ -13,16 +13,14 @@ Vector = tuple[float, float, float]
 
 GRAVITY_MPS2 = np.array([0.0, 0.0, -9.81])  # standard gravity, rounded [m/s^2]
 
+#: Velocity with which the right hand throws: to the left and upwards [m/s]
 THROWN_MPS: Vector = (0.0, 1.1, 1.4)
-"""Velocity with which the right hand throws: to the left and upwards [m/s]."""
-
 SWINGS_S, FLIES_S, STOPS_S = 0.3, 0.3, 0.25  # how long a throw, the flight and the stop take [s]
 
+#: From where the object stands to where the throw begins [m]
 THROW_FROM_M: Vector = (0.0, -0.08, 0.16)
-"""From where the object stands to where the throw begins [m]."""
-
+#: From where the object is caught to where the hand waits as if it held it there [m]
 AWAITED_M = np.array([0.0, 0.04, -0.02])
-"""From where the object is caught to where the hand waits as if it held it there [m]."""
 
 
 @dataclass(frozen=True)
@@ -86,9 +84,8 @@ class Phase:
 
 
 Script = tuple[Phase, ...]
+#: Name, length [s] and motion of the object in a phase in which it is held
 Step = tuple[str, float, Move | None]
-"""Name, length [s] and motion of the object in a phase in which it is held."""
-
 STAND = Phase("stand", 0.6, look="ahead")
 
 

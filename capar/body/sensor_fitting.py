@@ -31,61 +31,47 @@ from capar.model.errors import CaparError
 from extractors.readers.names import SIDES, without_side
 
 SOLVER = "daqp"
+#: Weights of a metre and of a radian between a sensor and its place on the body
 POSITION_COST, ORIENTATION_COST = 10.0, 3.0
-"""Weights of a metre and of a radian between a sensor and its place on the body."""
-
+#: Weights of a radian away from the posture aimed at: for a hinge of one radian's range, and where
+#: a sensor is lost
 POSTURE_COST, BRIDGE_COST = 0.05, 0.5
-"""Weights of a radian away from the posture aimed at: for a hinge of one radian's range, and where
-a sensor is lost."""
-
+#: Weight of a radian's step from frame to frame: without it solutions chatter at joint limits
 DAMPING_COST = 0.03
-"""Weight of a radian's step from frame to frame: without it solutions chatter at joint limits."""
-
+#: Weights where no sensor is below the chest: of a radian of the pelvis's tilt; of a metre of a
+#: foot's height and a radian of its tilt; of a metre of a foot and of the pelvis from where they
+#: stood if the sensors stay near
 UPRIGHT_COST, STANDING_COST, ON_SPOT_COST = 0.5, (5.0, 0.5), (2.0, 1.0)
-"""Weights where no sensor is below the chest: of a radian of the pelvis's tilt; of a metre of a
-foot's height and a radian of its tilt; of a metre of a foot and of the pelvis from where they stood
-if the sensors stay near."""
-
+#: Who moves no further than this, by the mean of all sensors, stands on one spot [m]
 ON_SPOT_M = 0.5
-"""Who moves no further than this, by the mean of all sensors, stands on one spot [m]."""
-
+#: Weight of a radian of the upper trunk's tilt where no sensor is on it: hands and head alone would
+#: let it lean as far as they reach together
 TRUNK_COST = 0.15
-"""Weight of a radian of the upper trunk's tilt where no sensor is on it: hands and head alone
-would let it lean as far as they reach together."""
-
+#: Iterations for the first frame, and more of them at most where a sensor is left behind
 SETTLING, CATCHING_UP = 60, 20
-"""Iterations for the first frame, and more of them at most where a sensor is left behind."""
-
+#: A sensor farther than this from its place after the usual steps is left behind [m]
 FAR_BEHIND_M = 0.02
-"""A sensor farther than this from its place after the usual steps is left behind [m]."""
-
 LARGEST_STEP = 0.35  # largest step of a hinge in one iteration [rad], whatever the recording's rate
 LIMIT_MARGIN = float(np.radians(0.1))  # a hinge this near its limit counts as at it [rad]
 
+#: How the names of segments of the lower body end
 LOWER = ("pelvis", "thigh", "shank", "foot", "toes")
-"""How the names of segments of the lower body end."""
-
+#: Segments that are taken to be seen with those that they are on
 ENDS = ("fingers", "fingertips", "thumb", "toes", "eye")
-"""Segments that are taken to be seen with those that they are on."""
-
+#: What sensors are called besides the names of their places
 OTHER_NAMES = {"pelvis": "l5", "sacrum": "l5", "neck_base": "neck"}
-"""What sensors are called besides the names of their places."""
-
+#: The measures that decide where joints are, and are estimated from a motion
 FREE = (
     "upper_arm", "forearm", "acromial_height", "shoulder_breadth", "cervicale_height",
     "thigh", "shank", "spine_breadth",
 )  # fmt: skip
-"""The measures that decide where joints are, and are estimated from a motion."""
-
 SAMPLES, ROUNDS = 60, 6  # frames and Gauss-Newton steps by which they are
 
+#: Deviations of a filtered sensor's pose, soft tissue included [m] and [rad]
 NOISE_M, NOISE_RAD = 0.002, float(np.radians(0.7))
-"""Deviations of a filtered sensor's pose, soft tissue included [m] and [rad]."""
-
+#: Deviations of a hinge from the reference posture that somebody takes up, and from standing during
+#: the motion [rad]
 REFERENCE_RAD, LOOSE_RAD = float(np.radians(1.5)), 1.0
-"""Deviations of a hinge from the reference posture that somebody takes up, and from standing during
-the motion [rad]."""
-
 DELTA_M = 1e-4  # step of finite differences [m]
 
 

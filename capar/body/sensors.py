@@ -18,9 +18,9 @@ from extractors.thresholds import Thresholds
 
 REFERENCE_S = 0.4  # how long the reference posture is held at the start [s] (thesis 3.1)
 
+#: Deviation of where a sensor is strapped from its nominal place, an axis [m] (estimate)
 PLACEMENT_M = 0.010
-"""Deviation of where a sensor is strapped from its nominal place, an axis [m] (estimate)."""
-
+#: The measures that decide where a segment is relative to the pelvis, for the right side
 CHAINS = {
     "thorax_upper": ("cervicale_height",),
     "head": ("stature",),
@@ -29,13 +29,10 @@ CHAINS = {
     "right_thigh": ("thigh",),
     "right_foot": ("thigh", "shank"),
 }
-"""The measures that decide where a segment is relative to the pelvis, for the right side."""
-
+#: Cutoff of the zero-phase filter [Hz]: above what hands do, below most of a tracker's noise
 CUTOFF_HZ = 8.0
-"""Cutoff of the zero-phase filter [Hz]: above what hands do, below most of a tracker's noise."""
-
+#: Losses that are interpolated (spec 3), and how long longer ones take to fade out or in [s]
 GAP_S, FADE_S = 0.1, 0.1
-"""Losses that are interpolated (spec 3), and how long longer ones take to fade out or in [s]."""
 
 
 class CalibrationError(CaparError):

@@ -15,16 +15,14 @@ from capar.model.capture import Shape
 
 CHIN_BELOW_EYES = 0.063  # [share of stature]; Drillis & Contini 1966 have the chin at 0.870
 
+#: Half the breadth and half the thickness of the palm [share of the hand's length]
 PALM = (0.22, 0.075)
-"""Half the breadth and half the thickness of the palm [share of the hand's length]."""
-
+#: Distance of the middle of the palm from the wrist [share of the hand's length]
 PALM_FROM_WRIST = 0.42
-"""Distance of the middle of the palm from the wrist [share of the hand's length]."""
-
 USUAL_MASS = 27.0  # mass over squared stature of the body whose girths the data file gives [kg/m2]
 
+#: Breadth between the acromia of the same body [share of stature]; Gordon et al. 2014
 USUAL_BREADTH = 0.2368
-"""Breadth between the acromia of the same body [share of stature]; Gordon et al. 2014."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,33 +9,29 @@ from jaxtyping import Float
 
 from capar.body.anthropometry import Measures, is_right, mirrored, table
 
+#: Where the spine bends, from the sacrum (0) to cervicale (1): L5/S1, L3/4, T12/L1, T6/7
 SPINE = {
     "lumbar_lower": (0.0, 0.15),
     "lumbar_upper": (0.15, 0.38),
     "thorax_lower": (0.38, 0.70),
     "thorax_upper": (0.70, 1.0),
 }
-"""Where the spine bends, from the sacrum (0) to cervicale (1): L5/S1, L3/4, T12/L1, T6/7."""
-
 SACRUM_ABOVE_HIPS = 0.045  # height of L5/S1 above the hip joints [share of stature] (estimate)
 
+#: Depth of the shoulder's centre below the acromion [share of stature]
 SHOULDER_BELOW_ACROMION = 0.0265
-"""Depth of the shoulder's centre below the acromion [share of stature]."""
-
+#: Distance of the shoulders' centres as a share of the biacromial breadth [1] (estimate)
 SHOULDER_BREADTH = 0.92
-"""Distance of the shoulders' centres as a share of the biacromial breadth [1] (estimate)."""
-
+#: Distance of a hip joint from the midline, of the breadth between the spines (Bell 1990) [1]
 HIP_OF_SPINES = 0.36
-"""Distance of a hip joint from the midline, of the breadth between the spines (Bell 1990) [1]."""
-
 HEAD_BELOW_EYES = 0.013  # depth of the head's joint below the eyes [share of stature] (estimate)
 
 DOWN = np.array([0.0, 0.0, -1.0])
 
 HEEL = 0.26  # how far the heel lies behind the ankle [share of the foot's length] (estimate)
 
+#: How far the ball of the foot lies before the ankle [share of the foot's length] (estimate)
 BALL = 0.47
-"""How far the ball of the foot lies before the ankle [share of the foot's length] (estimate)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,23 +117,22 @@ def _right_side(m: Measures) -> list[Segment]:
 LIMBS = ("upper_arm", "forearm", "hand", "thigh", "shank", "foot")
 TRUNK = ("lower_trunk", "middle_trunk", "upper_trunk")  # from the hips upwards
 
+#: The segment that a small part's mass is taken from
 HOLDERS = {
     "upper_trunk": "thorax_upper",
     "head": "head",
     "hand": "right_hand",
     "foot": "right_foot",
 }
-"""The segment that a small part's mass is taken from."""
-
 LEAST_MOMENT = 1e-7  # smallest moment of inertia about any axis [kg m2], for eyes and finger tips
 
 _Rows = dict[str, dict[str, Any]]
 _Vector = Float[np.ndarray, "3"]
 
 
+#: Mass [kg], its centre in the segment's frame [m], and its moments about the forward, leftward and
+#: upward axes through it, standing [kg m2]
 Inertia = tuple[float, _Vector, _Vector]
-"""Mass [kg], its centre in the segment's frame [m], and its moments about the forward, leftward and
-upward axes through it, standing [kg m2]."""
 
 
 def inertias(measures: Measures, segments: Mapping[str, Segment]) -> Mapping[str, Inertia]:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 from capar.model.observation import Observation, ObservedLink
 
+#: What parts of a hand are called, by their kind without the number of a joint
 FINGERS: Mapping[str, str] = {
     "thumb": "thumb",
     "index": "index finger",
@@ -13,11 +14,8 @@ FINGERS: Mapping[str, str] = {
     "pinky": "little finger",
     "little": "little finger",
 }
-"""What parts of a hand are called, by their kind without the number of a joint."""
-
+#: What letters in the names of sensors stand for
 SIDES: Mapping[str, str] = {"l": "left", "r": "right"}
-"""What letters in the names of sensors stand for."""
-
 ORDINALS = ("first", "second", "third", "fourth")
 
 

@@ -205,19 +205,17 @@ def _frozen(array: np.ndarray) -> np.ndarray:
     return out
 
 
+#: Metres per unit, by the names that headers and capture.toml use
 UNITS: Mapping[str, float] = {
     "m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048,
 }  # fmt: skip
-"""Metres per unit, by the names that headers and capture.toml use."""
-
+#: The rotation that brings each axis to z: about which axis, and by how much [degrees]
 UP: Mapping[str, tuple[str, float]] = {
     "z": ("x", 0.0), "y": ("x", 90.0), "x": ("y", -90.0),
     "-z": ("x", 180.0), "-y": ("x", -90.0), "-x": ("y", 90.0),
 }  # fmt: skip
-"""The rotation that brings each axis to z: about which axis, and by how much [degrees]."""
-
+#: A direction is an axis's if the cosine of the angle between them is at least this [1]
 AXIS_COSINE = 0.9
-"""A direction is an axis's if the cosine of the angle between them is at least this [1]."""
 
 
 def upward(axis: str) -> "Rotation":
@@ -260,8 +258,8 @@ class Conventions:
         return near if abs(UNITS[near] / wanted - 1.0) <= share else None
 
 
+#: What sensors and objects may be called: such a name is a constant of the rules, unquoted
 NAME = re.compile(r"[a-z][A-Za-z0-9_]*")
-"""What sensors and objects may be called: such a name is a constant of the rules, unquoted."""
 
 
 @dataclass(frozen=True)

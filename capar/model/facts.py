@@ -733,8 +733,8 @@ class MovesWith(Observed):
     gap: int
 
 
+#: Every kind of fact that extractors state, in the order in which they are written
 MEASURED: tuple[type[Observed], ...] = tuple(_defined)
-"""Every kind of fact that extractors state, in the order in which they are written."""
 
 
 @fact_kind("doubted", "FlickerCorrection body other firstFrame lastFrame takenFor")
@@ -763,8 +763,8 @@ class MovedBy(Observed):
     last: int
 
 
+#: Every kind of fact that an observation rests on: measured, corrected, and what moves what
 ALL_FACT_KINDS: tuple[type[Observed], ...] = tuple(_defined)
-"""Every kind of fact that an observation rests on: measured, corrected, and what moves what."""
 
 
 def read_fact(text: str) -> Observed:
@@ -785,11 +785,10 @@ def read_fact(text: str) -> Observed:
     raise FactError(f"{text!r} is no measured fact; their predicates are {known}")
 
 
+#: First and last frame
 Interval = tuple[int, int]
-"""First and last frame."""
-
+#: The kinds of intervals that other facts name by their first frames
 _NAMED = {kind.declaration.span for kind in ALL_FACT_KINDS} - set(Span)
-"""The kinds of intervals that other facts name by their first frames."""
 
 
 class FactIntervals:

@@ -14,12 +14,10 @@ Series: TypeAlias = Float[np.ndarray, "frames"]
 Holds: TypeAlias = Bool[np.ndarray, "frames"]
 Vector: TypeAlias = Float[np.ndarray, "3"]
 Quaternion: TypeAlias = Float[np.ndarray, "4"]
+#: World positions [m] at every frame; NaN where lost
 Places: TypeAlias = Float[np.ndarray, "frames 3"]
-"""World positions [m] at every frame; NaN where lost."""
-
+#: Unit quaternions w x y z, body to world, at every frame; NaN where lost
 Turns: TypeAlias = Float[np.ndarray, "frames 4"]
-"""Unit quaternions w x y z, body to world, at every frame; NaN where lost."""
-
 UNIT_TOLERANCE = 0.01  # how far a quaternion's norm may lie from one before it is an error [1]
 ROUNDING = 1e-15  # how far from one rounding leaves the norm of a quaternion that was scaled [1]
 

@@ -19,9 +19,9 @@ from capar.model.par import ComplexPar, Ipar, Upar
 SCHEMA = 3  # the version that this program reads and writes, the field ``schema`` of an observation
 
 
+#: What has a JSON form
 Value: TypeAlias = Observation | ComplexPar | Upar | Ipar | Calibration
-"""What has a JSON form."""
-
+#: Each kind by the name of its schema
 KINDS: dict[str, type[Value]] = {
     "observation": Observation,
     "complex_par": ComplexPar,
@@ -29,8 +29,6 @@ KINDS: dict[str, type[Value]] = {
     "ipar": Ipar,
     "calibration": Calibration,
 }
-"""Each kind by the name of its schema."""
-
 _Part = TypeVar("_Part", Fact, Notice)
 _T = TypeVar("_T", Observation, ComplexPar, Upar, Ipar, Calibration)
 

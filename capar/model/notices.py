@@ -47,8 +47,8 @@ UNMOVED = (
 
 Value = str | int | float | bool
 
+#: A name and what it is, such as ``("tolerance_m", 0.005)``
 Field = tuple[str, Value]
-"""A name and what it is, such as ``("tolerance_m", 0.005)``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,6 +170,7 @@ class NoticeKind:
     by: str = ""
 
 
+#: Each code with its text: every sentence of a notice is here
 KINDS: Mapping[str, NoticeKind] = {
     "long-gap": NoticeKind(_long_gap, "tracks with gaps"),
     "markers-not-rigid": NoticeKind(
@@ -313,4 +314,3 @@ KINDS: Mapping[str, NoticeKind] = {
     "mesh-not-closed": NoticeKind("{0}: the mesh {mesh} is not closed, it has {edges} open edges"),
     "rule-violation": NoticeKind("{violation}"),
 }
-"""Each code with its text: every sentence of a notice is here."""

@@ -12,11 +12,11 @@ from capar.model.facts import Fact
 from capar.model.locations import ConstraintLocation, GuideLocation, SampledTrack
 from capar.model.par import UNKNOWN, ComplexPar, FeatureSet, Ipar, NamingRule, Style, Upar
 
+#: What shows an observation in some form, as ``MODULE:FUNCTION``; imported when asked for
 VIEWS = {
     "html": "capar.views.page:observation_page",
     "frame": "capar.views.tables:observation_frame",
 }
-"""What shows an observation in some form, as ``MODULE:FUNCTION``; imported when asked for."""
 
 
 def display(form: str) -> Callable[..., Any]:
@@ -57,9 +57,8 @@ class ForceStyle:
     residual_m: float
 
 
+#: End-effectors of which a body has two, and what both are called
 BOTH = {"hand": "hands", "foot": "feet"}
-"""End-effectors of which a body has two, and what both are called."""
-
 MOST_SHOWN = 240  # so many letters of segments' names are shown in one line
 
 
@@ -156,9 +155,9 @@ class SegmentRelation:
     other: tuple[str, int]
 
 
+#: It goes on with the other; it does so after a pause; it is a short part of it; it turns upright
+#: what was poured from in it; it holds what the other works in
 SEGMENT_RELATIONS = ("same_action", "resumes", "fragment_of", "rights", "steadies")
-"""It goes on with the other; it does so after a pause; it is a short part of it; it turns upright
-what was poured from in it; it holds what the other works in."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,8 +176,8 @@ class ObservedObject:
     orientation: tuple[float, float, float, float]  #: Unit quaternion w x y z there
 
 
+#: What a data frame of an observation can hold a row of
 FrameOf = Literal["segments", "contacts", "facts"]
-"""What a data frame of an observation can hold a row of."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,6 @@
 """A body has the measures and ranges of its tables, its solver gets where it can, and it stands."""
 
 import mink
-import mujoco
 import numpy as np
 import pytest
 from combinations import EVERY
@@ -21,7 +20,7 @@ from capar.body.anthropometry import (
     table,
 )
 from capar.body.gaze import share_costs
-from capar.body.human import Human, PostureError, body_spec, site_rows
+from capar.body.human import Human, PostureError, site_rows
 from capar.body.inverse_kinematics import (
     MARGIN_M,
     BalanceLimit,
@@ -118,35 +117,6 @@ def test_a_standing_body_has_its_centre_of_mass_where_it_was_measured(name: str)
     assert -0.05 < x < 0.15, "it stands over its feet"
 
 
-@pytest.mark.parametrize("name", READY)
-def test_mujoco_loads_the_model_without_a_warning(
-    name: str, capfd: pytest.CaptureFixture[str]
-) -> None:
-    spec = body_spec(ready_made(name))
-    model = spec.compile()
-    again = mujoco.MjModel.from_xml_string(spec.to_xml())
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    assert again.nq == model.nq
-    assert all(warning.number == 0 for warning in data.warning)
-    assert capfd.readouterr() == ("", "")
-
-
-def test_every_number_names_its_source() -> None:
-    tables = table("anthropometry")
-    for population in READY:
-        for name, row in tables[population].items():
-            assert name == "age" or row["source"] in tables["sources"]
-    assert {row["source"] for row in table("joints")["joint"]} <= set(table("joints")["sources"])
-
-
-def test_the_measures_say_which_were_given() -> None:
-    measures = estimate_measures(sex="female", given={"stature": 1.7, "upper_arm": 0.29})
-    assert measures.given == {"stature", "upper_arm"}
-    assert measures["upper_arm"] == 0.29
-    assert measures.deviations["upper_arm"] < measures.deviations["forearm"]
-
-
 def test_a_capture_states_its_performers_measures() -> None:
     measures = measures_of(Agent("ada", "woman", {"stature": 1.6, "mass": 55.0, "shoe": 0.3}))
     assert measures.sex == "female"
@@ -219,18 +189,6 @@ def test_no_step_leads_further_away_and_the_palm_gets_there() -> None:
     assert not human.outside(configuration.q[None], margin=1e-3).any()
 
 
-def test_plain_steps_to_the_same_place_go_to_and_fro_beside_it() -> None:
-    human = CHILD
-    configuration, tasks = asked(human)
-    limits = Solver(human, tasks).limits
-    missed = []
-    for _ in range(100):
-        velocity = mink.solve_ik(configuration, tasks, 1.0, "daqp", limits=limits)
-        configuration.integrate_inplace(velocity, 1.0)
-        missed.append(missed_m(configuration, tasks))
-    assert min(missed[-20:]) > 0.010
-
-
 SLACK_M = 0.002
 """What the steps of inverse kinematics may go beyond a margin, as they are straight [m]."""
 
@@ -240,9 +198,7 @@ def human(request: pytest.FixtureRequest) -> Human:
     return Human.of(ready_made(request.param))
 
 
-def test_the_base_of_support_is_around_both_soles_and_what_is_between_them(
-    human: Human,
-) -> None:
+def test_the_base_of_support_is_around_both_soles_and_what_is_between_them(human: Human) -> None:
     base = standing_support(human, human.posture())
     feet = human.sites(human.posture()[None], ("right_foot", "left_foot"))
     ankles = {name.removesuffix("_foot"): spots[0] for name, (spots, _) in feet.items()}

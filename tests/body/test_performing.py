@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from virtual_bodies.drinking import drinking, steps_of
-from virtual_bodies.looking import fixations, share_told
 
 from capar import regeneration
 from capar.body.anthropometry import ready_made
@@ -19,15 +18,13 @@ from capar.body.scripted_actions import action_capture, performed
 from capar.body.scripts import (
     GRAVITY_MPS2,
     Script,
-    Toss,
     drink,
     lift_with_both_hands,
     sip,
     slide,
-    tossed,
     touch,
 )
-from capar.body.sensors import PERFECT, Tracker
+from capar.body.sensors import Tracker
 from capar.model.capture import Capture
 from capar.model.errors import UnknownNameError
 from capar.pipelines.observation import observe
@@ -107,19 +104,6 @@ def test_no_forearm_is_inside_the_box_that_is_lifted(who: str) -> None:
         assert min(pair.distance_m for pair in [*found, Pair(1.0, "", "")]) > -0.001
 
 
-def test_hands_keep_clear_of_the_table(acted: Performance) -> None:
-    top = acted.scene.table
-    assert top is not None
-    low, high = top.shape.bounds + np.array(top.place)
-    seen = record(acted, name="clear", seed=1, tracker=PERFECT)
-    for hand in seen.acting:
-        assert hand.shape is not None
-        for frame in range(0, len(acted.times), 2):
-            corners = hand.stream.pose(frame).apply(hand.shape.vertices)
-            apart = np.maximum(np.maximum(low - corners, corners - high), 0.0)
-            assert np.linalg.norm(apart, axis=1).min() > 0.006, f"{hand.name} at {frame}"
-
-
 def test_the_gaze_is_at_the_thing_before_the_hand_is(acted: Performance) -> None:
     name, start, end = next(each for each in acted.phases if each[0] == "reach")
     assert name == "reach"
@@ -170,19 +154,6 @@ def test_a_bundle_reads_back_as_the_capture_and_is_the_same_each_time(tmp_path: 
     assert read.agent.measures["upper_arm"] == acted.human.measures["upper_arm"].__round__(4)
 
 
-def test_without_a_trackers_faults_a_capture_is_the_truth() -> None:
-    acted = _act("child", "reach")
-    seen = record(acted, name="reaches", seed=1, tracker=PERFECT, sensors=("left_hand", "head"))
-    true, _ = acted.human.sites(acted.motion, ["sensor_left_hand"])["sensor_left_hand"]
-    np.testing.assert_allclose(seen.sensor("left_hand").stream.positions, true, atol=1e-9)
-    tracked = record(
-        acted, name="reaches", seed=1, tracker=PERFECT, sensors=("head",), eye_tracker=True
-    )
-    _, ways = lines_of_sight(acted.human, acted.motion)
-    pose = tracked.sensor("eyes").stream.pose(10)
-    np.testing.assert_allclose(pose.rotation.apply([1.0, 0.0, 0.0]), ways[10], atol=1e-9)
-
-
 def test_what_cannot_be_reached_is_refused_with_the_distance() -> None:
     human = Human.of(ready_made("child"))
     far = scene(table(0.7), Thing("mug", cup(0.035, 0.09), (1.6, 0.0, 0.7), round=True))
@@ -214,16 +185,6 @@ def test_it_is_observed_as_thrown_by_one_hand_and_caught_by_the_other(who: str) 
         for link in seen.links
     }
     assert names == {"right_hand": ["Throw"], "left_hand": ["Catch"]}
-
-
-def test_a_swing_begins_and_ends_with_its_velocities() -> None:
-    toss = Toss(start=(0.2, 0.0, -0.4), end=(0.0, 1.1, 1.4))
-    by, seconds, step = (0.0, 0.3, 0.2), 0.4, 1e-5
-    places = [tossed(toss, by, seconds, at / seconds) for at in (0.0, step, 0.4 - step, 0.4)]
-    np.testing.assert_allclose(places[0], 0.0, atol=1e-12)
-    np.testing.assert_allclose(places[-1], by, atol=1e-12)
-    np.testing.assert_allclose(places[1] / step, toss.start, atol=1e-3)
-    np.testing.assert_allclose((places[3] - places[2]) / step, toss.end, atol=1e-3)
 
 
 STEPS = {
@@ -288,25 +249,4 @@ def test_a_sip_is_the_published_six_steps(who: str, profile: str, *, noisy: bool
     assert steps_of(observe(capture, rules=profile)) == SIPS[profile]
 
 
-PERFORMED = (("touch", "child"), ("carry", "woman"), ("pour", "man"))
 """Each action by another body; how it looks depends on the two apart."""
-
-
-@pytest.mark.parametrize(("action", "who"), PERFORMED)
-def test_what_is_looked_at_is_told_while_the_gaze_stays_on_it(action: str, who: str) -> None:
-    found = fixations(performed(action, who), action_capture(action, who))
-    things = [fixation for fixation in found if fixation.thing]
-    assert things
-    assert all(fixation.told == 1.0 for fixation in things)
-    assert share_told(found, of_things=False) > 0.9
-    assert max(fixation.missed_rad for fixation in found) < np.radians(0.5)
-
-
-def test_a_face_alone_passes_above_a_mug_that_the_eyes_look_at() -> None:
-    made = performed("sip")
-    capture = record(made, name="sip", seed=3, tracker=PERFECT, eye_tracker=False)
-    face = fixations(made, capture)
-    eyes = fixations(made, action_capture("sip"))
-    assert [fixation.thing for fixation in face] == [fixation.thing for fixation in eyes]
-    assert share_told(face, of_things=True) < 0.5 < share_told(eyes, of_things=True)
-    assert [sensor.name for sensor in capture.sensors] == ["right_hand", "left_hand", "head"]

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
-from observations import FEATURES, drink_from_mug, pick_up_with_both_hands, with_unknown
+from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 
 from capar.model.capture import Agent
 from capar.model.errors import NEAREST, CaparError, ParError, UnknownNameError
@@ -154,15 +154,6 @@ def test_a_number_that_json_lacks_is_refused_with_its_place() -> None:
     seen = replace(drink_from_mug(), rate_hz=float("nan"))
     with pytest.raises(ParError, match=r"Observation\.rate_hz: nan"):
         to_json(seen)
-
-
-@given(st.text("01", max_size=7), st.text("01", max_size=7))
-def test_feature_strings_of_wrong_lengths_never_make_a_feature_set(start: str, end: str) -> None:
-    if len(start) == len(end) == 3:
-        assert FeatureSet(start, end, "00", "hand", "00").count == 2
-    else:
-        with pytest.raises(ParError):
-            FeatureSet(start, end, "00", "hand", "00")
 
 
 ONE_OF_EACH = (
@@ -321,22 +312,6 @@ def test_a_wrong_document_is_refused_with_what_was_expected(
         read_notice({**right, **changed})
 
 
-PUBLISHED = {
-    "Reach": 0.445274,
-    "MoveObjTo": 0.171642,
-    "MoveObj": 0.0472637,
-    "TouchWith": 0.0472637,
-    "ResumePosture": 0.179104,
-}
-
-
-@pytest.mark.parametrize("name", FEATURES)
-def test_the_published_feature_sets_have_the_lengths_of_thesis_4_4_1(name: str) -> None:
-    start, end, change, force = FEATURES[name]
-    made = FeatureSet(start, end, change, "hand", force)
-    assert len(made.rel_start) == len(made.rel_end) == 2 * made.count - 1
-
-
 @given(st.integers(0, 6), st.integers(0, 6), st.integers(0, 6), st.integers(0, 6))
 def test_feature_strings_agree_in_length_or_are_refused(a: int, b: int, c: int, d: int) -> None:
     good = (a, b, d) == ((2 * c - 1, 2 * c - 1, c) if c else (0, 0, 0))
@@ -345,15 +320,6 @@ def test_feature_strings_agree_in_length_or_are_refused(a: int, b: int, c: int, 
     else:
         with pytest.raises(ParError):
             FeatureSet("1" * a, "1" * b, "0" * c, "hand", "0" * d)
-
-
-def test_the_hand_made_drink_has_the_published_shares() -> None:
-    par = drink_from_mug().complex_par
-    assert par.common is not None
-    steps = (*par.links[0].steps, par.common)
-    assert sum(each.share for each in steps) == pytest.approx(1.0, abs=1e-12)
-    for step, share in ((each, PUBLISHED[each.action]) for each in (*steps[:3], *steps[4:])):
-        assert step.share == pytest.approx(share, abs=0.02)
 
 
 def test_another_performer_and_other_durations_are_the_same_action() -> None:
@@ -377,12 +343,6 @@ def test_other_names_of_the_objects_are_the_same_action() -> None:
     )
     assert other != par
     assert other.signature == par.signature
-
-
-def test_another_order_of_steps_is_another_action() -> None:
-    par = drink_from_mug().complex_par
-    link = replace(par.links[0], steps=tuple(reversed(par.links[0].steps)))
-    assert replace(par, links=(link,)).signature != par.signature
 
 
 def test_the_common_step_belongs_to_every_link() -> None:

@@ -1,6 +1,5 @@
 """Motions of a body in closed form: hinges swing smoothly out of the standing posture."""
 
-from collections.abc import Mapping
 from typing import TypeAlias
 
 import numpy as np
@@ -86,8 +85,3 @@ def _swing(
     share = np.clip((times - still_s) / 1.5, 0.0, 1.0)
     fade = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
     return fade * (0.5 * (low + high) + 0.5 * (high - low) * wave)
-
-
-def by_joint(human: Human, motion: np.ndarray) -> Mapping[str, np.ndarray]:
-    """Angles of every hinge over time [rad]."""
-    return {name: motion[:, human.index(name)] for name in human.joints}

@@ -5,7 +5,6 @@ import numpy as np
 from capar.body.anthropometry import Measures, estimate_measures, ready_made
 
 READY = ("man", "woman", "child")
-LIMBS = ("upper_arm", "forearm", "thigh", "shank")
 
 
 def random_person(seed: int) -> Measures:
