@@ -77,18 +77,13 @@ def fit_joints(
     stated: Mapping[str, str] | None = None,
     faces: Float[np.ndarray, "frames 3"] | None = None,
 ) -> PointFit:
-    """Fit the body to joints or key points in a world whose z axis points up.
+    """Fit the body to joints or key points [m] in a world whose z axis points up; NaN where lost.
 
     Hands and heads of which three points are seen are turned as these are. Toes, necks, spines and
     other heads, which skeletons have at different places, begin where the body has its own; then
-    each is where it is on its segment in the median of the fitted postures.
-
-    Args:
-        points: By foreign name [m]; NaN where lost.
-        convention: What the names mean.
-        ground_m: Height of the ground on which feet stand, where it is known [m].
-        stated: Places of names that the convention lacks or has otherwise, if they move as one.
-        faces: Directions in the world in which the face looks [1], where they are known.
+    each is where it is on its segment in the median of the fitted postures. Feet stand on a ground
+    of known height [m]; faces look in known directions [1]. Places that a capture states beyond the
+    convention count if they move as one.
 
     Raises:
         SkeletonError: Fewer than four places are known, or the points are of no body.

@@ -81,15 +81,11 @@ USUAL_SHARE = (0.8, 1.25)
 def fit_markers(
     points: Points, names: Mapping[str, BodyName], *, ground_m: float | None = None
 ) -> PointFit:
-    """Fit the body to markers in a world whose z axis points up; each has a site ``marker_<name>``.
+    """Fit the body to markers [m] in a world whose z axis points up; NaN where lost.
 
     The size comes from distances of landmarks and from the stature that all heights show. Markers
-    begin where landmarks usually are; then each is where it is on its segment in the median.
-
-    Args:
-        points: By name [m]; NaN where lost.
-        names: What the names mean; points of no name are ignored.
-        ground_m: Height of the ground on which feet stand, where it is known [m].
+    begin where landmarks usually are; then each is where it is on its segment in the median. Each
+    has a site ``marker_<name>``. Feet stand on a ground of known height [m].
 
     Raises:
         SkeletonError: Too few markers are at known places, or none three of them at once.

@@ -109,14 +109,9 @@ def fit_points(
     weights: Mapping[str, float] | None = None,
     guidance: Guidance | None = None,
 ) -> PointFit:
-    """Draw places of the body to points in a world whose z axis points up.
+    """Draw places of the body to points [m] in a world whose z axis points up; NaN where lost.
 
-    Args:
-        human: The body.
-        points: By name [m]; NaN where lost. Names without a place are ignored.
-        places: Site or segment of the body, by name.
-        weights: How much a place counts, where it is not 1 [1].
-        guidance: What else is known of the motion.
+    ``places`` are sites or segments by name of a point, ``weights`` are 1 where not given.
 
     Raises:
         SkeletonError: Fewer than four places are known, or there are never three points at once.

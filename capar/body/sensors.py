@@ -70,16 +70,12 @@ def calibrate(
     angles: Mapping[str, float] | None = None,
     placed: tuple[Float[np.ndarray, "3"], float] | None = None,
 ) -> Calibration:
-    """Find where each sensor sits, from its pose while the body holds a known posture.
+    """Find where each sensor sits, from its pose while the body holds a posture for 0.4 s.
 
     A sensor is turned as seen. Its distance from its nominal place is shared, by their variances,
-    between where it was strapped and measures that are not the person's.
-
-    Args:
-        human: The body.
-        streams: Of any of the sensors, by place; the posture is held in the first 0.4 s.
-        angles: The reference posture [rad]; arms down, palms inwards where None.
-        placed: Where the feet are [m] and the heading [rad]; None fits the body into the sensors.
+    between where it was strapped and measures that are not the person's. The posture [rad] is arms
+    down, palms inwards where not given; the body is fitted into the sensors unless ``placed``:
+    where the feet are [m] and the heading [rad].
 
     Raises:
         CalibrationError: A sensor is lost throughout, or too few are there to place the body.

@@ -22,10 +22,8 @@ ORDINALS = ("first", "second", "third", "fourth")
 def body_names(observation: Observation) -> dict[str, str]:
     """What bodies are called where that is not their name, by name.
 
-    An object is called by its kind if that has several words and no other object is of it; a finger
-    by the hand that it is of, and by the joint where several joints of it are told apart. Of other
-    end-effectors whose name begins with a letter for the side, that is spelt out, and what the
-    end-effector counts as is told, if the name does not: the ankle of the right foot.
+    An object by its kind if no other is of it; a finger by its hand, and by its joint where several
+    are recorded; other end-effectors with the letter of their side spelt out.
     """
     kinds = Counter(thing.kind for thing in observation.objects)
     names = {}

@@ -145,11 +145,7 @@ class Calibration:
         return Calibration, tuple({**values, "thresholds": dict(self.thresholds)}.values())
 
     def body(self, name: str) -> BodyCalibration:
-        """That of the sensor of a name, or else of the object.
-
-        Raises:
-            UnknownNameError: There is neither.
-        """
+        """That of the sensor of a name, or else of the object."""
         return named("body", name, (*self.sensors, *self.objects), where="calibration")
 
     def sensor(self, name: str) -> BodyCalibration:
@@ -161,11 +157,7 @@ class Calibration:
         return named("object", name, self.objects, where="calibration")
 
     def pair(self, first: str, second: str) -> PairCalibration:
-        """That of two bodies.
-
-        Raises:
-            UnknownNameError: Their contact is not sought.
-        """
+        """That of two bodies; UnknownNameError where their contact is not sought."""
         found = self.sought(first, second)
         if found is None:
             known = [f"{pair.first}-{pair.second}" for pair in self.pairs]

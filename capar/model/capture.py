@@ -248,11 +248,7 @@ class Conventions:
         return None
 
     def unit(self, factor: float, share: float) -> str | None:
-        """The unit that makes lengths so many times as long; None where none is near it.
-
-        ``factor``: by what lengths in metres are to be multiplied [1]. ``share``: largest deviation
-        of a unit from the wanted one, as a share of it [1].
-        """
+        """The unit by which lengths are so many times longer, to within a share [1]; else None."""
         wanted = self.unit_m * factor
         near = min(UNITS, key=lambda name: abs(np.log(UNITS[name] / wanted)))
         return near if abs(UNITS[near] / wanted - 1.0) <= share else None
@@ -421,11 +417,7 @@ class Capture:
         return tuple(each for each in self.sensors if each.role is Role.ACTS and not each.part_of)
 
     def parts_of(self, name: str) -> tuple[Sensor, ...]:
-        """The sensors that ride on one end-effector: the one that acts for it, then its parts.
-
-        Raises:
-            UnknownNameError: There is no such sensor.
-        """
+        """The sensors that ride on one end-effector: the one that acts for it, then its parts."""
         return (self.sensor(name), *(each for each in self.sensors if each.part_of == name))
 
     @property
@@ -434,17 +426,9 @@ class Capture:
         return tuple(each for each in self.sensors if each.role is Role.ATTENDS)
 
     def sensor(self, name: str) -> Sensor:
-        """The sensor of that name.
-
-        Raises:
-            UnknownNameError: There is none.
-        """
+        """The sensor of that name; UnknownNameError where there is none."""
         return named("sensor", name, self.sensors)
 
     def tag_object(self, name: str) -> TagObject:
-        """The tag object of that name.
-
-        Raises:
-            UnknownNameError: There is none.
-        """
+        """The tag object of that name; UnknownNameError where there is none."""
         return named("object", name, self.objects)

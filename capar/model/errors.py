@@ -58,11 +58,7 @@ _Member = TypeVar("_Member", bound=_Named)
 
 
 def named(kind: str, name: str, members: Sequence[_Member], *, where: str = "") -> _Member:
-    """The member of a name.
-
-    Raises:
-        UnknownNameError: There is none.
-    """
+    """The member of a name; UnknownNameError where there is none."""
     for member in members:
         if member.name == name:
             return member

@@ -27,32 +27,20 @@ class Fact:
     predicate: ClassVar[str]
 
     def symbol(self) -> clingo.Symbol:
-        """The fact as the solver's own value.
-
-        Raises:
-            FactError: An integer that the solver cannot hold.
-        """
+        """The fact as the solver's own value; FactError for integers beyond 32 bits."""
         values = (getattr(self, name) for name in _arguments(cast(Any, type(self))))
         return clingo.Function(self.predicate, [_symbol(each) for each in values])
 
     @classmethod
     def from_symbol(cls, symbol: clingo.Symbol) -> Self:
-        """The fact that a solver's value states.
-
-        Raises:
-            FactError: Another predicate, another number of arguments, or another type.
-        """
+        """The fact that a solver's value states; FactError where it is of another kind."""
         kinds = _arguments(cast(Any, cls)).values()
         if symbol.name != cls.predicate or len(symbol.arguments) != len(kinds):
             raise FactError(f"{symbol} is no {cls.predicate}/{len(kinds)}")
         return cls(*map(_value, symbol.arguments, kinds))
 
     def __str__(self) -> str:
-        """The fact as a line of a logic program, without its full stop.
-
-        Raises:
-            FactError: An integer that the solver cannot hold.
-        """
+        """The fact as a line of a logic program, without its full stop."""
         return program((self,))[:-2]
 
 
@@ -98,11 +86,7 @@ def signatures(facts: Iterable[Fact]) -> frozenset[tuple[str, int]]:
 
 
 def program(facts: "tuple[Fact, ...]") -> str:
-    """The facts as a logic program, one a line, in their order.
-
-    Raises:
-        FactError: An integer that the solver cannot hold.
-    """
+    """The facts as a logic program, one a line; FactError for integers beyond 32 bits."""
     lines: list[str] = []
     # By columns of one kind, in a third of the time of one fact after another.
     for kind, group in groupby(facts, cast(Any, type)):

@@ -110,8 +110,6 @@ def from_middle(
     """How far each place is from the middle of the box around some of them [m]; NaN where lost.
 
     Of places along a line the middle is that from which the furthest is nearest.
-
-    ``places``: world positions [m], NaN where lost. ``of``: the frames of the box.
     """
     low, high = np.nanmin(places[of], axis=0), np.nanmax(places[of], axis=0)
     return np.asarray(np.linalg.norm(places - 0.5 * (low + high), axis=1))
@@ -120,10 +118,7 @@ def from_middle(
 def from_mean(
     orientations: Float[np.ndarray, "frames 4"], of: slice = slice(None)
 ) -> Float[np.ndarray, "frames"]:
-    """The angle of each orientation to the mean of some of them [rad]; NaN where it is lost.
-
-    ``of``: the frames of which the mean is taken.
-    """
+    """The angle of each orientation to the mean of some of them [rad]; NaN where it is lost."""
     known = orientations[of][~np.isnan(orientations[of]).any(axis=1)]
     if not len(known):
         return np.full(len(orientations), np.nan)
@@ -133,11 +128,7 @@ def from_mean(
 def fit_rigid(
     local: Float[np.ndarray, "markers 3"], world: Float[np.ndarray, "markers 3"]
 ) -> tuple["RigidTransform", float]:
-    """The transform that takes marker places in the body to the world, by least squares.
-
-    Returns:
-        ``T_world_body`` and the root mean square of what is left [m].
-    """
+    """``T_world_body`` by least squares from places of markers, and what is left (RMS) [m]."""
     from scipy.spatial.transform import RigidTransform, Rotation
 
     centre_local, centre_world = local.mean(axis=0), world.mean(axis=0)

@@ -34,20 +34,12 @@ _T = TypeVar("_T", Observation, ComplexPar, Upar, Ipar, Calibration)
 
 
 def to_json(value: Value) -> str:
-    """The value as JSON: keys in the order of the fields, facts as atoms, a final newline.
-
-    Raises:
-        ParError: A number is not finite; JSON has no such numbers.
-    """
+    """The value as JSON: keys in the order of the fields, facts as atoms; ParError for NaN."""
     return json.dumps(document(value), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def document(value: Value) -> dict[str, Any]:
-    """The value as dictionaries, lists, strings and numbers.
-
-    Raises:
-        ParError: A number is not finite.
-    """
+    """The value as dictionaries, lists, strings and finite numbers; else ParError."""
     out: dict[str, Any] = _plain(value, type(value).__name__)
     return {"schema": SCHEMA, **out} if isinstance(value, Observation) else out
 
@@ -71,11 +63,7 @@ def _plain(value: Any, place: str) -> Any:
 
 
 def from_json(text: str, *, where: str = "") -> Observation:
-    """The observation that a JSON text states.
-
-    Raises:
-        ParError: No JSON, or not of the schema; it says at which place and what was expected.
-    """
+    """The observation that a JSON text states; ParError as for `value_from_json`."""
     return value_from_json(text, Observation, where=where)
 
 

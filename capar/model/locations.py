@@ -24,12 +24,9 @@ class Nlt:
     orientation: tuple[float, float, float, float]
 
     def mirrored(self, axis: int = ACROSS) -> "Nlt":
-        """The same place for the other side of the body (thesis 4.4.2.2).
+        """The same place for the other side of the body (thesis 4.4.2.2), across an axis x, y or z.
 
-        Mirrored in the plane through the object's origin across an axis; the constraint's own axes
-        are those of the other side's end-effector, mirrored alike.
-
-        ``axis``: 0, 1 or 2 for x, y or z; by default the one that points to the object's left.
+        The constraint's own axes are those of the other side's end-effector, mirrored alike.
         """
         x, y, z = (0.0 - each if i == axis else each for i, each in enumerate(self.position))
         w, *vector = self.orientation
@@ -125,11 +122,7 @@ class SampledTrack:
     samples: str
 
     def __post_init__(self) -> None:
-        """Check that the text can be read.
-
-        Raises:
-            ParError: It is no Base64 of samples, or the step is no time.
-        """
+        """Check that the samples are Base64 of places and the step is a time; else ParError."""
         try:
             size = len(b64decode(self.samples, validate=True))
         except Base64Error:

@@ -124,11 +124,7 @@ def notice(
 
 
 def read_notice(document: Mapping[str, Any]) -> Notice:
-    """The notice that a JSON form states; its message is made again.
-
-    Raises:
-        CaparError: It has other fields, or a field of another type.
-    """
+    """The notice that a JSON form states, its message made again; CaparError if it is none."""
     kinds: dict[str, tuple[Any, str]] = {
         "code": (str, "a text"),
         "bodies": (list, "a list of names"),

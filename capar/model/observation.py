@@ -238,11 +238,7 @@ class Observation:
         return page
 
     def to_frame(self, of: FrameOf = "segments") -> Any:
-        """A pandas DataFrame of its segments, contacts or facts, one a row; times in seconds.
-
-        Raises:
-            CaparError: pandas is not installed, or there is no such frame.
-        """
+        """A pandas DataFrame of its segments, contacts or facts, one a row; times in seconds."""
         return display("frame")(self, of)
 
     def performer(self, ee: str) -> str:
@@ -281,11 +277,7 @@ class SegmentAddress:
     capture: str = ""  #: Name or path of the capture; empty where there is only one
 
     def __post_init__(self) -> None:
-        """Check that the address can be read back from its text.
-
-        Raises:
-            AddressError: The end-effector is empty or has a slash, or the index is negative.
-        """
+        """Check that the address can be read back from its text."""
         if not self.ee or "/" in self.ee or self.index < 0:
             raise AddressError(
                 f"end-effector {self.ee!r} and index {self.index} are no address of a segment; "
@@ -314,11 +306,7 @@ class SegmentAddress:
 
 
 def split_capture(text: str) -> tuple[str, SegmentAddress]:
-    """The capture that an address names, and the address within it.
-
-    Raises:
-        AddressError: It is no address, or names no capture.
-    """
+    """The capture that an address names, and the address in it; AddressError if it has none."""
     address = SegmentAddress.parse(text)
     if not address.capture:
         raise AddressError(f"{text!r} names no capture; write {FORM}, such as {EXAMPLE}")
@@ -328,13 +316,7 @@ def split_capture(text: str) -> tuple[str, SegmentAddress]:
 def find_segment(
     links: Iterable[ObservedLink], address: SegmentAddress, *, capture: str
 ) -> Segment:
-    """The segment at an address.
-
-    ``links``: the links of one capture. ``address``: with that capture's name, or without any.
-
-    Raises:
-        UnknownNameError: The address names another capture, or a segment that is not there.
-    """
+    """The segment of a capture's links at an address; UnknownNameError where there is none."""
     if address.capture not in {"", capture}:
         raise UnknownNameError("capture", address.capture, [capture])
     known = {

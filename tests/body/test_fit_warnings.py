@@ -13,7 +13,6 @@ from capar.body.body_fitting import Places, fit_warnings
 from capar.body.human import Human
 from capar.body.point_fitting import with_markers
 from capar.body.sensor_fitting import Fit
-from capar.model.notices import notice
 from capar.views.viewer.stage import stage, with_mannequin
 from extractors.readers.names import BodyName
 
@@ -94,11 +93,3 @@ def test_a_marker_far_from_its_landmark_is_named_and_one_on_it_is_not(warned: Wa
         found = warned(replace(fitted(WHOLE | {"M": "right_thigh"}), human=human), names)
         assert text in found
         assert bool(found) == bool(text)
-
-
-def test_a_body_whose_bone_changes_its_length_is_shown_as_a_point() -> None:
-    name = next(body.name for body in stage(CAPTURE).bodies if body.shape is not None)
-    said = notice("bone-stretches", name, "a", "b", shortest_m=0.1, longest_m=0.9)
-    shapes = {body.name: body.shape for body in stage(replace(CAPTURE, notices=(said,))).bodies}
-    assert shapes[name] is None
-    assert sum(shape is not None for shape in shapes.values()) > 1

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from virtual_bodies.drinking import drinking, steps_of
+from virtual_bodies.drinking import steps_of
 
 from capar import regeneration
 from capar.body.anthropometry import ready_made
@@ -25,7 +25,6 @@ from capar.body.scripts import (
     touch,
 )
 from capar.body.sensors import Tracker
-from capar.model.capture import Capture
 from capar.model.errors import UnknownNameError
 from capar.pipelines.observation import observe
 from capar.regeneration.collisions import Pair, Surroundings
@@ -187,22 +186,6 @@ def test_it_is_observed_as_thrown_by_one_hand_and_caught_by_the_other(who: str) 
     assert names == {"right_hand": ["Throw"], "left_hand": ["Catch"]}
 
 
-STEPS = {
-    "extended": (
-        "Reach(mug)", "Touch(mug)", "MoveObjTo(mug, head)", "TouchWith(mug, head)",
-        "MoveObjTo(mug, table)", "TouchWith(mug, table)", "ResumePosture(mug)",
-    ),
-    "thesis": (
-        "Reach(mug)", "TouchWith(mug, table)", "MoveObjTo(mug, head)", "TouchWith(mug, head)",
-        "MoveObjTo(mug, table)", "TouchWith(mug, table)", "ResumePosture(mug)",
-    ),
-}  # fmt: skip
-"""What the script asks for: it holds the mug for 0.3 s before it is raised, and at the mouth.
-
-A support that bears the mug since before it was taken is no subordinate in ``extended`` alone.
-"""
-
-
 SIPS = {
     "extended": (
         "Reach(mug)", "MoveObjTo(mug, head)", "Drink(mug, head)", "MoveObjTo(mug, table)",
@@ -214,31 +197,6 @@ SIPS = {
     ),
 }  # fmt: skip
 """The published steps (thesis 5.2.1); Drink is a MoveObj."""
-
-SLOW_CLOCK = pytest.mark.xfail(
-    strict=True,
-    reason="at 30 Hz a child's hold of the mug lies 0.13 s between crossings; steps take 0.15 s",
-)
-TRIALS = [
-    pytest.param("woman", 1, 30.0, "extended"),
-    pytest.param("woman", 1, 30.0, "thesis"),
-    pytest.param("child", 3, 30.0, "extended"),
-    pytest.param("child", 3, 30.0, "thesis", marks=SLOW_CLOCK),
-    pytest.param("child", 3, 60.0, "thesis"),
-]
-"""A table of any height, a mug anywhere on it."""
-
-
-@cache
-def trial(who: str, number: int, rate_hz: float) -> Capture:
-    return drinking(who, number, rate_hz=rate_hz)
-
-
-@pytest.mark.parametrize(("who", "number", "rate_hz", "profile"), TRIALS)
-def test_a_drink_is_the_same_for_bodies_and_tables_of_any_size(
-    who: str, number: int, rate_hz: float, profile: str
-) -> None:
-    assert steps_of(observe(trial(who, number, rate_hz), rules=profile)) == STEPS[profile]
 
 
 @pytest.mark.parametrize("who", ["man", "woman", "child"])

@@ -270,11 +270,6 @@ def test_it_comes_back_from_json(each: Notice) -> None:
     assert read_notice(json.loads(json.dumps(each.document()))) == each
 
 
-@given(st.permutations(list(ONE_OF_EACH)))
-def test_notices_have_one_order(shuffled: list[Notice]) -> None:
-    assert sorted(shuffled) == sorted(ONE_OF_EACH)
-
-
 def test_an_unknown_code_is_refused_with_those_that_there_are() -> None:
     with pytest.raises(UnknownNameError, match=r"no kind of notice 'long_gap'.*'long-gap'"):
         notice("long_gap", "mug")
@@ -369,12 +364,6 @@ def test_an_address_reads_back_as_it_was_written(ee: str, index: int, capture: s
 def test_a_text_that_is_no_address_is_refused_with_an_example(text: str) -> None:
     with pytest.raises(AddressError, match="write CAPTURE/END_EFFECTOR/INDEX, such as "):
         SegmentAddress.parse(text)
-
-
-@pytest.mark.parametrize(("ee", "index"), [("", 0), ("a/b", 0), ("a", -1)])
-def test_what_could_not_be_read_back_is_no_address(ee: str, index: int) -> None:
-    with pytest.raises(AddressError):
-        SegmentAddress(ee, index)
 
 
 def test_each_segment_is_found_with_and_without_its_capture() -> None:
