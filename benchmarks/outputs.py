@@ -349,7 +349,7 @@ def scenes() -> Iterator[str]:
     script = (
         "import json, importlib\n"
         "names = [b + '/' + s for b in ('hands', 'objects', 'household', 'people')\n"
-        "         for s in list(importlib.import_module('scenes.' + b).SCENES)[::10]]\n"
+        "         for s in sorted(importlib.import_module('scenes.' + b).SCENES)[::10]]\n"
         "print(json.dumps(names))"
     )
     done = subprocess.run(
