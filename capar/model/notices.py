@@ -279,7 +279,11 @@ KINDS: Mapping[str, NoticeKind] = {
         'no sensor acts, so no action is told; state role = "acts" for the hands and feet that do'
     ),
     "contact-tolerance": NoticeKind(
-        "bodies count as touching within {tolerance_mm:.1f} mm (stated by the capture: {stated})"
+        {
+            "True": "bodies count as touching within {tolerance_mm:.1f} mm, as the capture states",
+            "False": "bodies count as touching within {tolerance_mm:.1f} mm, from the noise at rest",
+        },
+        by="stated",
     ),
     "doubled-stamps": NoticeKind("{samples} samples repeat a stamp; the last of each is kept"),
     "flicker": NoticeKind(
