@@ -280,7 +280,7 @@ KINDS: Mapping[str, NoticeKind] = {
     ),
     "contact-tolerance": NoticeKind(
         {
-            "True": "bodies count as touching within {tolerance_mm:.1f} mm, as the capture states",
+            "True": "bodies count as touching within {tolerance_mm:.1f} mm, as is stated",
             "False": "bodies count as touching within {tolerance_mm:.1f} mm, from the noise at rest",
         },
         by="stated",
