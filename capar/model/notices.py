@@ -281,7 +281,7 @@ KINDS: Mapping[str, NoticeKind] = {
     "contact-tolerance": NoticeKind(
         {
             "True": "bodies count as touching within {tolerance_mm:.1f} mm, as is stated",
-            "False": "bodies count as touching within {tolerance_mm:.1f} mm, from the noise at rest",
+            "False": "bodies count as touching within {tolerance_mm:.1f} mm, from noise at rest",
         },
         by="stated",
     ),
