@@ -13,7 +13,7 @@ from statistics import median
 from time import perf_counter
 
 from capar.model.facts import Fact, Frames, Link, Moving, RateMhz, Tag, Touching, program
-from capar_rules.borders.border_numbers import number_borders
+from capar_rules.borders.numbering import number_borders
 from capar_rules.engine.profiles import profile
 from capar_rules.engine.solver import solve
 from capar_rules.pars.inference import infer

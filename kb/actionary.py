@@ -11,7 +11,7 @@ from kb.lookup.agents import Agents, aliases, joined
 from kb.lookup.pars import unknown_observation
 from kb.queries.questions import question
 from kb.store import names, sparql, updates
-from kb.store.answers import Answer, Plain
+from kb.store.answer_values import Answer, Plain
 from kb.store.stores import Store, is_address, open_store
 from kb.store.stores import place as default_place
 from kb.store.validation import check_statements

@@ -26,7 +26,7 @@ from kb.errors import ShapeError, StoreError
 from kb.lookup.agents import aliases, joined
 from kb.lookup.pars import observations, unknown_observation
 from kb.store import names, sparql, updates
-from kb.store.answers import turtle
+from kb.store.answer_values import turtle
 from kb.store.statements import insertion
 from kb.store.stores import Store
 from kb.store.validation import by_thing, faults

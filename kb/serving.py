@@ -28,7 +28,7 @@ from kb.errors import LockedError, StoreError, TimeLimitError
 from kb.exchange import bring_in, export, read
 from kb.queries.questions import as_json, check_known, questions
 from kb.queries.questions import question as question_of
-from kb.store.answers import Answer, Found
+from kb.store.answer_values import Answer, Found
 from kb.store.updates import SCHEMA
 from ontology.namespace import XSD
 

@@ -8,10 +8,10 @@ from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.performing import perform
 from capar.body.recording import Truth, record, write_bundle
-from capar.body.scenes import Thing, scene
 from capar.body.scripted_actions import action_capture
 from capar.body.scripts import STAND
 from capar.body.sensors import PERFECT
+from capar.body.virtual_scenes import Thing, scene
 from capar.model.capture import Capture
 from capar.pipelines.observation import observe
 from kb import Actionary

@@ -11,8 +11,8 @@ from functools import cache
 from pathlib import Path
 
 from capar.model.facts import Fact, read_fact
-from capar_rules.borders.border_numbers import number_borders
 from capar_rules.borders.deflicker import steady
+from capar_rules.borders.numbering import number_borders
 from capar_rules.engine.profiles import Profile, profile
 from capar_rules.engine.solver import solve, text_of
 

@@ -9,10 +9,10 @@ from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.performing import perform
 from capar.body.recording import record
-from capar.body.scenes import Scene, Thing, box, cup, table
 from capar.body.scripted_actions import action_scene
 from capar.body.scripts import STAND
 from capar.body.sensors import PERFECT
+from capar.body.virtual_scenes import Scene, Thing, box, cup, table
 from capar.model.capture import Capture, TagType
 from capar.pipelines.language import vocabulary
 from capar.pipelines.linguistic_report import primitive_files, primitive_words

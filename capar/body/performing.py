@@ -8,10 +8,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.gaze import look_tasks, share_costs
+from capar.body.gaze_control import look_tasks, share_costs
 from capar.body.human import Human
 from capar.body.inverse_kinematics import BalanceLimit, BalanceTask, joint_limits, standing_support
-from capar.body.scenes import Scene, SceneError, grips
 from capar.body.scripts import (
     SIDES,
     Move,
@@ -22,6 +21,7 @@ from capar.body.scripts import (
     tossed,
     turned_about,
 )
+from capar.body.virtual_scenes import Scene, SceneError, grips
 
 #: Weights of a metre and of a radian at the palms, of a metre and a radian at the feet, and of a
 #: metre of the centre of mass from above the feet

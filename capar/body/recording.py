@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.gaze import lines_of_sight
+from capar.body.gaze_control import lines_of_sight
 from capar.body.performing import TOUCH_M, Performance
 from capar.body.scripts import SIDES, vector
 from capar.body.sensors import PERFECT, Mount, Tracker, recorded, sense, strap_on

@@ -8,17 +8,6 @@ from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.performing import Performance, Role, perform, perform_together
 from capar.body.recording import record, record_together
-from capar.body.scenes import (
-    HINGE_M,
-    Scene,
-    Thing,
-    box,
-    cup,
-    door_scene,
-    drawer_scene,
-    scene,
-    table,
-)
 from capar.body.scripts import (
     SIDES,
     Move,
@@ -36,6 +25,17 @@ from capar.body.scripts import (
     vector,
 )
 from capar.body.sensors import PERFECT, Tracker
+from capar.body.virtual_scenes import (
+    HINGE_M,
+    Scene,
+    Thing,
+    box,
+    cup,
+    door_scene,
+    drawer_scene,
+    scene,
+    table,
+)
 from capar.model.capture import Capture, TagType
 from capar.model.errors import UnknownNameError
 

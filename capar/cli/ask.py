@@ -12,7 +12,7 @@ from capar.cli.output import answer, console
 from capar.model.errors import CaparError, FileError, UnknownNameError
 
 if TYPE_CHECKING:
-    from kb.store.answers import Answer
+    from kb.store.answer_values import Answer
 
 
 TimeLimit = Annotated[float, Option(metavar="SECONDS", help="How long a query may take.")]

@@ -16,7 +16,7 @@ from capar.model.errors import CaparError
 if TYPE_CHECKING:
     from capar.body.human import Human
     from capar.model.capture import Capture as CaptureData
-    from capar.pipelines.instantiation import Asked
+    from capar.pipelines.action_binding import Asked
     from capar.pipelines.preparation import World
     from capar.pipelines.recordings import Performed, Recording
     from capar.pipelines.round_trips import Trip
@@ -273,7 +273,7 @@ def _act(
 
 def _perform_instance(task: _Task, what: str) -> None:
     """Perform an action or a capture's on objects of a scene, and say how good it is."""
-    from capar.pipelines.instantiation import instantiate
+    from capar.pipelines.action_binding import instantiate
     from capar.pipelines.preparation import prepare, procedures_of
     from capar.pipelines.round_trips import by_hand
 
@@ -342,7 +342,7 @@ def _recorded(
     task: _Task, what: str, known: "Sequence[Recording]"
 ) -> "tuple[Recording, Source, tuple[str, ...]]":
     """The recording that is performed, and notes on its choice."""
-    from capar.pipelines.instantiation import find_action
+    from capar.pipelines.action_binding import find_action
     from capar.pipelines.recordings import observed_recording
     from capar.pipelines.round_trips import observed_source
 
@@ -361,7 +361,7 @@ def _recorded(
 
 def _asked(task: _Task, what: str, words: "Actionary", source: "Source") -> "tuple[Asked, World]":
     """What is asked for, and the world in which it is, as measured."""
-    from capar.pipelines.instantiation import Asked
+    from capar.pipelines.action_binding import Asked
     from capar.pipelines.preparation import captured_world, measured_world
     from capar.pipelines.round_trips import body
     from capar.regeneration.scenes import read_scene

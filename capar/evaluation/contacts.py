@@ -27,7 +27,7 @@ from capar.model.geometry import runs
 from capar.pipelines.observation import facts_program
 from capar_rules.engine.profiles import Profile
 from extractors.readers.bundle.capture_toml import frame_times, read_capture
-from extractors.readers.files import check_zip
+from extractors.readers.file_access import check_zip
 from extractors.readers.names import constant_name
 from extractors.readers.schema.entry import substituted
 

@@ -16,7 +16,7 @@ from jaxtyping import Float
 
 from capar.evaluation import Contradictions, Kind
 from capar.model.errors import FileError, UnknownNameError
-from extractors.readers.files import read_bytes, read_text
+from extractors.readers.file_access import read_bytes, read_text
 
 
 @dataclass(frozen=True, slots=True, order=True)

@@ -21,8 +21,8 @@ from capar.model.locations import ConstraintLocation
 from capar.model.notices import Notice, notice
 from capar.model.observation import Observation, Segment
 from capar.pipelines.trials import trial_of
-from capar_rules.borders.border_numbers import number_borders
 from capar_rules.borders.deflicker import steady
+from capar_rules.borders.numbering import number_borders
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.movers.movers import movers
 from capar_rules.pars.inference import Inference, infer

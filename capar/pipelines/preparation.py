@@ -9,13 +9,13 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human
-from capar.body.scenes import Thing
+from capar.body.virtual_scenes import Thing
 from capar.export.plans import PlanExportError, PlanSource, PlanStep, plan_source
 from capar.model.capture import Capture, TagType
 from capar.model.errors import RuleError
 from capar.model.facts import Touching as Touch
 from capar.model.observation import Observation
-from capar.pipelines.instantiation import Instance
+from capar.pipelines.action_binding import Instance
 from capar.pipelines.observation import observe
 from capar.pipelines.recordings import Performed, Recording
 from capar.pipelines.round_trips import by_hand, observed_source

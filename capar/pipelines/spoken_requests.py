@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from capar.body.human import Human
-from capar.body.scenes import Thing
+from capar.body.virtual_scenes import Thing
 from capar.model.capture import TagType
 from capar.model.par import Step
 from capar.pipelines.recordings import Performed, Recording

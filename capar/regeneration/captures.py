@@ -9,16 +9,16 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body import scenes
+from capar.body import virtual_scenes
 from capar.body.anthropometry import measures_of
 from capar.body.human import Human
 from capar.body.performing import Performance
 from capar.body.recording import Truth, joined, record, write_bundle
-from capar.body.scenes import Thing, box
 from capar.body.scripts import SIDES
 from capar.body.sensors import PERFECT, Tracker
 from capar.body.shapes import segment_surface
 from capar.body.skeleton import eyes_between
+from capar.body.virtual_scenes import Thing, box
 from capar.model.capture import Agent, Capture, Role, Sensor, Shape, Stream, TagObject, TagType
 from capar.model.errors import CaparError, FileError
 from capar.model.geometry import runs
@@ -35,7 +35,7 @@ def capture_of(
     """What a tracker would have recorded of a motion; without faults, unless stated."""
     plan = motion.plan
     made = Performance(
-        human=plan.human, scene=scenes.Scene(plan.scene.things), script=(),
+        human=plan.human, scene=virtual_scenes.Scene(plan.scene.things), script=(),
         times=np.array(plan.source.times), motion=motion.postures, things=plan.things,
         phases=(), gazes=plan.looks, looks=(), slip_m={},
     )  # fmt: skip
@@ -414,7 +414,7 @@ def capture_of_steps(made: Stepping, *, name: str, agent: str) -> Capture:
     ground = Thing(
         "floor", box(*FLOOR_M), (*scene.place, scene.floor_m - FLOOR_M[2]), tag=TagType.FIXED
     )
-    there = scenes.Scene({**scene.things, ground.name: ground})
+    there = virtual_scenes.Scene({**scene.things, ground.name: ground})
     paths = {n: RigidTransform.concatenate([t.pose] * count) for n, t in there.things.items()}
     ahead = AHEAD_M * np.array([np.cos(scene.heading), np.sin(scene.heading)])
     looks = np.column_stack([made.postures[:, :2] + ahead, np.full(count, scene.floor_m)])

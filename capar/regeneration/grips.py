@@ -10,7 +10,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.recording import HAND_SEGMENTS
-from capar.body.scenes import Thing
+from capar.body.virtual_scenes import Thing
 from capar.model.capture import Shape
 from capar.regeneration.body_frames import BodyFrames
 from capar.regeneration.collisions import Surroundings

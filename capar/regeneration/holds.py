@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 from scipy.spatial import ConvexHull, QhullError
 from scipy.spatial.transform import RigidTransform
 
-from capar.body.scenes import Thing
+from capar.body.virtual_scenes import Thing
 from capar.model.capture import Capture, TagType
 from capar.model.facts import Displaced, Leans, Lies, Touching
 from capar.model.geometry import runs

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from capar.body.scenes import Thing
+from capar.body.virtual_scenes import Thing
 from capar.model.capture import Shape, TagType
 from capar.model.errors import UnknownNameError
 from capar.regeneration.scenes import PlanError, Scene, moved

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from capar.body.scenes import Thing, Things
+from capar.body.virtual_scenes import Thing, Things
 from capar.model.capture import Shape, TagType
 from capar.model.errors import CaparError, FileError
 

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.gaze import LOOK_COST, look_tasks, share_costs
+from capar.body.gaze_control import LOOK_COST, look_tasks, share_costs
 from capar.body.human import ROOT_SIZE, Human
 from capar.body.inverse_kinematics import Solver as Steps
 from capar.body.performing import RELAXED

@@ -12,10 +12,10 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.body.anthropometry import measures_of
 from capar.body.human import Human
 from capar.body.recording import HAND_SEGMENTS
-from capar.body.scenes import Thing
 from capar.body.sensors import CUTOFF_HZ, target
 from capar.body.shapes import segment_surface
 from capar.body.skeleton import eyes_between
+from capar.body.virtual_scenes import Thing
 from capar.model.capture import Capture, Shape, Stream, TagObject, TagType
 from capar.model.facts import Displaced, Touching
 from capar.model.geometry import runs, transforms

@@ -11,7 +11,7 @@ from capar.model.par import FeatureSet
 from capar.pipelines.observation import facts_program
 from capar_rules.authoring.drafting import bits_of, excerpt, fitting, rule_telling
 from capar_rules.authoring.user_primitives import LACKING, Example, new_rule, rules_of, written
-from capar_rules.borders.border_numbers import Tick, number_borders
+from capar_rules.borders.numbering import Tick, number_borders
 from capar_rules.engine.profiles import Profile, profile
 from capar_rules.engine.syntax import parse, parse_text
 from capar_rules.lint.checking import admitted_profile

@@ -8,7 +8,7 @@ from functools import cache
 from capar.model.facts import Fact, Frames, Link, RateMhz, Tag, Touching, program
 from capar.model.observation import ObservedLink, Segment
 from capar.model.par import UNKNOWN
-from capar_rules.borders.border_numbers import number_borders
+from capar_rules.borders.numbering import number_borders
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.solver import rule_file, solve, worlds
 from capar_rules.engine.syntax import parse, parse_text, split_arguments, towards

@@ -11,7 +11,7 @@ from capar.model.errors import RuleError
 from capar.model.facts import Fact
 from capar.model.observation import Segment
 from capar.model.par import UNKNOWN
-from capar_rules.borders.border_numbers import number_borders
+from capar_rules.borders.numbering import number_borders
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.syntax import Statement, parse_text, stated
 from capar_rules.explain.conditions import DOUBTED, Condition, Conditions, leading

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from capar.model.body_names import is_plural
 from capar.model.facts import ALL_FACT_KINDS, Fact
-from capar_rules.borders.border_numbers import Tick
+from capar_rules.borders.numbering import Tick
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.solver import rule_file
 from capar_rules.engine.syntax import Signature, Statement, parse, split_arguments

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from capar.model.facts import Fact, FactIntervals, Observed, RateMhz
-from capar_rules.borders.border_numbers import LastTick, MovesDuring, Tick, Within
+from capar_rules.borders.numbering import LastTick, MovesDuring, Tick, Within
 from capar_rules.borders.ticks import Shares, in_frames, times
 
 BUCKET = 256

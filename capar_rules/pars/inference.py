@@ -15,7 +15,7 @@ from capar.model.observation import (
     SegmentRelation,
 )
 from capar.model.par import UNKNOWN, FeatureSet
-from capar_rules.borders.border_numbers import Tick, number_borders
+from capar_rules.borders.numbering import Tick, number_borders
 from capar_rules.engine.profiles import Profile
 from capar_rules.engine.solver import Answer, Term, solve
 

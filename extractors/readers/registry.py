@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from capar.model.errors import CaparError, CaptureError, FileError, UnknownNameError
-from extractors.readers.files import HEAD, read_bytes
+from extractors.readers.file_access import HEAD, read_bytes
 from extractors.readers.formats import (
     bvh,
     c3d,

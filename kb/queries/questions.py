@@ -20,11 +20,11 @@ from pyoxigraph import Literal, NamedNode, RdfFormat, serialize
 
 from capar.model.errors import CaparError, UnknownNameError
 from kb.store import names, sparql, statements
-from kb.store.answers import Answer, Plain, exact, plain, turtle
-from kb.store.answers import Found as Term
+from kb.store.answer_values import Answer, Plain, exact, plain, turtle
+from kb.store.answer_values import Found as Term
 
 if TYPE_CHECKING:
-    from kb.store.answers import Answer
+    from kb.store.answer_values import Answer
     from kb.store.stores import Store
 
 

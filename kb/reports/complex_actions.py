@@ -7,7 +7,7 @@ from kb.encode.pars import COMMON
 from kb.exchange import part
 from kb.lookup.pars import Pars, observations_of
 from kb.store import names
-from kb.store.answers import turtle
+from kb.store.answer_values import turtle
 from ontology import CAPAR
 
 

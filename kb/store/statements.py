@@ -10,7 +10,7 @@ from capar.model.errors import CaparError
 from capar.model.locations import SampledTrack
 from capar.model.par import Nlt, PathPoint
 from kb.store import names
-from kb.store.answers import Plain, plain
+from kb.store.answer_values import Plain, plain
 from ontology import CAPAR
 from ontology.namespace import RDF, RDFS
 

@@ -27,8 +27,8 @@ from pyoxigraph import Store as Oxigraph
 
 from capar.model.errors import UnknownNameError
 from kb.errors import DamagedError, LockedError, QueryError, StoreError, TimeLimitError
-from kb.store import answers, sparql
-from kb.store.answers import Answer
+from kb.store import answer_values, sparql
+from kb.store.answer_values import Answer
 from kb.store.statements import insertion
 from ontology import DATA
 
@@ -161,7 +161,7 @@ class EmbeddedStore:
 
     def ask(self, query: str) -> Answer:
         """What a query of ours answers, over the union of all graphs if it names none."""
-        return self._read(lambda store: answers.collect(evaluated(store, query)))
+        return self._read(lambda store: answer_values.collect(evaluated(store, query)))
 
     def _read(self, reading: Callable[[Oxigraph], _T]) -> _T:
         """What a reading gives; a reader reopens the folder if files go meanwhile."""
@@ -337,7 +337,7 @@ class RemoteStore:
 
     def ask(self, query: str) -> Answer:
         """What a query of ours answers, over the union of all graphs."""
-        return answers.decode(*self.encoded(query))
+        return answer_values.decode(*self.encoded(query))
 
     def encoded(self, query: str) -> tuple[str, bytes]:
         """The media type and the bytes of an answer.
@@ -351,12 +351,12 @@ class RemoteStore:
         if sparql.opens_tracks(query):
             copied = Oxigraph()
             copied.bulk_extend(self.quads())
-            return answers.encode(evaluated(copied, query))
+            return answer_values.encode(evaluated(copied, query))
         kind, asked = "application/sparql-query", f"{self.place}/query"
         if not sparql.names_graphs(query):
             return _post(f"{asked}?union-default-graph=true", query, kind)
         nowhere = f"ASK FROM <{DATA}graph/none> {{ ?s ?p ?o }}"
-        if answers.decode(*_post(asked, nowhere, kind)).boolean:
+        if answer_values.decode(*_post(asked, nowhere, kind)).boolean:
             raise StoreError(
                 f"{self.place}: this server ignores FROM; write GRAPH <...> {{ ... }} in its "
                 "place, or start the server without --union-default-graph"
@@ -459,7 +459,7 @@ def _asked_within(
     kind, _, rest = head.decode().partition(" ")
     if kind in {"query-error", "store-error"}:
         raise (QueryError if kind == "query-error" else StoreError)(json.loads(rest))
-    return answers.decode(rest, body)
+    return answer_values.decode(rest, body)
 
 
 def answer_request(source: BinaryIO) -> bytes:
@@ -484,7 +484,7 @@ def answer_request(source: BinaryIO) -> bytes:
 
 def _encoded(store: Oxigraph, query: str) -> tuple[str, bytes]:
     try:
-        return answers.encode(evaluated(store, query))
+        return answer_values.encode(evaluated(store, query))
     except RuntimeError as error:
         if _NO_FUNCTION.search(str(error)):
             raise QueryError(str(error)) from None
@@ -495,7 +495,7 @@ def user_message(problem: str) -> str:
     """A parser's message in short; an unknown function with the names of those that exist."""
     if slip := _NO_FUNCTION.search(problem):
         known = [*(f"capar:{each}" for each in sparql.FUNCTIONS), "those of SPARQL"]
-        return str(UnknownNameError("function", answers.short(slip[1]), known))
+        return str(UnknownNameError("function", answer_values.short(slip[1]), known))
     first = problem.splitlines()[0] if problem else ""
     before, expected, listed = first.partition("expected ")
     if expected:

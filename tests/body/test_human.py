@@ -8,7 +8,7 @@ from scipy.spatial.transform import RigidTransform
 from virtual_bodies.sizes import PEOPLE as SIZES
 from virtual_bodies.sizes import READY
 
-from capar.body import scenes
+from capar.body import virtual_scenes
 from capar.body.anthropometry import (
     MeasuresError,
     estimate_measures,
@@ -19,7 +19,7 @@ from capar.body.anthropometry import (
     ready_made,
     table,
 )
-from capar.body.gaze import share_costs
+from capar.body.gaze_control import share_costs
 from capar.body.human import Human, PostureError, site_rows
 from capar.body.inverse_kinematics import (
     MARGIN_M,
@@ -274,11 +274,13 @@ def test_weight_that_is_beside_the_feet_is_drawn_back_above_them(human: Human) -
 def test_a_performer_slides_a_far_mug_without_falling(far: float) -> None:
     human = Human.of(ready_made("child"))
     tall = human.measures["stature"]
-    mug = scenes.Thing(
-        "mug", scenes.cup(0.035, 0.09), (far * tall, -0.1 * tall, 0.45 * tall), round=True
+    mug = virtual_scenes.Thing(
+        "mug", virtual_scenes.cup(0.035, 0.09), (far * tall, -0.1 * tall, 0.45 * tall), round=True
     )
-    desk = scenes.table(0.45 * tall, near_m=0.13 * tall)
-    made = perform(human, scenes.scene(desk, mug), slide("mug", (0.0, 0.1, 0.0)), rate_hz=20.0)
+    desk = virtual_scenes.table(0.45 * tall, near_m=0.13 * tall)
+    made = perform(
+        human, virtual_scenes.scene(desk, mug), slide("mug", (0.0, 0.1, 0.0)), rate_hz=20.0
+    )
     base = standing_support(human, made.motion[0])
     places = np.array([human.centre_of_mass(posture)[:2] for posture in made.motion])
     assert base.outside(places).max() <= -MARGIN_M + SLACK_M

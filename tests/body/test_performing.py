@@ -9,11 +9,10 @@ from virtual_bodies.drinking import steps_of
 
 from capar import regeneration
 from capar.body.anthropometry import ready_made
-from capar.body.gaze import lines_of_sight
+from capar.body.gaze_control import lines_of_sight
 from capar.body.human import Human
 from capar.body.performing import Performance, PerformanceError, perform
 from capar.body.recording import record, truth_of, write_bundle
-from capar.body.scenes import Scene, Thing, box, cup, scene, table
 from capar.body.scripted_actions import action_capture, performed
 from capar.body.scripts import (
     GRAVITY_MPS2,
@@ -25,6 +24,7 @@ from capar.body.scripts import (
     touch,
 )
 from capar.body.sensors import Tracker
+from capar.body.virtual_scenes import Scene, Thing, box, cup, scene, table
 from capar.model.errors import UnknownNameError
 from capar.pipelines.observation import observe
 from capar.regeneration.collisions import Pair, Surroundings

@@ -27,7 +27,6 @@ from capar.body.body_fitting import with_body_parts
 from capar.body.human import Human
 from capar.body.performing import RELAXED, Performance, perform
 from capar.body.recording import record, truth_of, write_bundle
-from capar.body.scenes import Thing, box, scene, table
 from capar.body.scripted_actions import performed
 from capar.body.scripts import SIDES, touch
 from capar.body.sensor_fitting import (
@@ -50,6 +49,7 @@ from capar.body.sensors import (
     sense,
     strap_on,
 )
+from capar.body.virtual_scenes import Thing, box, scene, table
 from capar.cli import app
 from capar.model.capture import Capture, Stream, TagType
 from capar.model.errors import UnknownNameError

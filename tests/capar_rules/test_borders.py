@@ -22,8 +22,8 @@ from capar.model.facts import (
     Tag,
     Touching,
 )
-from capar_rules.borders.border_numbers import by_object, overlapping, shared, undisturbed
 from capar_rules.borders.deflicker import steady
+from capar_rules.borders.numbering import by_object, overlapping, shared, undisturbed
 from capar_rules.borders.ticks import Meanwhile, Undisturbed, times
 from capar_rules.engine.profiles import profile
 from capar_rules.pars.inference import infer

@@ -13,7 +13,7 @@ from pyoxigraph import NamedNode
 from kb.actionary import Actionary
 from kb.errors import QueryError, StoreError, TimeLimitError
 from kb.store import sparql
-from kb.store.answers import Answer
+from kb.store.answer_values import Answer
 
 ENDLESS = "SELECT (COUNT(*) AS ?n) WHERE { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i . ?j ?k ?l }"
 

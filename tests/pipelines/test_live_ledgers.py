@@ -23,6 +23,12 @@ from capar.model.facts import (
     Reverses,
     Touching,
 )
+from capar.pipelines.live.decided_until import (
+    Handling,
+    nameless,
+    out_of_sight,
+    undecided,
+)
 from capar.pipelines.live.frames import (
     DeviceFrames,
     FrameBuffer,
@@ -32,12 +38,6 @@ from capar.pipelines.live.frames import (
 )
 from capar.pipelines.live.ledgers import FactLedger, RuleMemory
 from capar.pipelines.live.rule_process import RuleProcess, inferred
-from capar.pipelines.live.undecided import (
-    Handling,
-    nameless,
-    out_of_sight,
-    undecided,
-)
 from capar_rules.engine.profiles import profile
 from extractors.devices.tracker import Description, Frame
 from extractors.measure import measure

@@ -5,7 +5,7 @@ import pytest
 from recorded_actions import RATE_HZ, good_trip, recorded
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.scenes import Thing, box, cup
+from capar.body.virtual_scenes import Thing, box, cup
 from capar.regeneration.collisions import inner_gap
 from capar.regeneration.holds import FRICTION, Load, steadiness, with_loads
 from capar.regeneration.scenes import raised, resized, stack

@@ -9,11 +9,11 @@ import pytest
 from exit_codes import exit_code
 from recorded_worlds import Worlds, worlds_in
 
-from capar.body.scenes import Thing, box, cup, table
 from capar.body.scripted_actions import action_capture
+from capar.body.virtual_scenes import Thing, box, cup, table
 from capar.model.capture import TagType
 from capar.model.errors import UnknownNameError
-from capar.pipelines.instantiation import check_applicable
+from capar.pipelines.action_binding import check_applicable
 from capar.pipelines.observation import observe
 from capar.pipelines.recordings import observed_recording
 from capar.pipelines.round_trips import observed_source

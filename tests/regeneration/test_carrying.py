@@ -6,7 +6,7 @@ from scipy.spatial.transform import RigidTransform
 
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
-from capar.body.scenes import Thing, box, cup, table
+from capar.body.virtual_scenes import Thing, box, cup, table
 from capar.model.capture import TagType
 from capar.regeneration import PlanError
 from capar.regeneration.paths import LIFTS_M, Carrying

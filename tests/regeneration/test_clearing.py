@@ -9,7 +9,7 @@ import trimesh
 
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
-from capar.body.scenes import Thing, box
+from capar.body.virtual_scenes import Thing, box
 from capar.model.capture import Shape, TagType
 from capar.regeneration.collisions import CLEAR_M, NEAR_M, ClearTask, Surroundings
 from capar.regeneration.scenes import Scene

@@ -12,10 +12,10 @@ from exit_codes import exit_code
 from recorded_actions import recorded
 from recorded_worlds import Worlds, worlds_in
 
-from capar.body.scenes import Thing, box
 from capar.body.scripted_actions import ACTIONS
+from capar.body.virtual_scenes import Thing, box
 from capar.model.capture import TagType
-from capar.pipelines.instantiation import Asked, Instance, instantiate
+from capar.pipelines.action_binding import Asked, Instance, instantiate
 from capar.pipelines.preparation import (
     Problem,
     Procedure,

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from capar.body.scenes import Thing, box, cup, table
+from capar.body.virtual_scenes import Thing, box, cup, table
 from capar.model.errors import CaparError
 from capar.regeneration.scenes import ASIDE_M, HEIGHTS_M, SIZES, Scene, drawn_scene, read_scene
 

@@ -27,10 +27,10 @@ from capar.model.observation import Observation, ObservedLink, Segment
 from capar.model.par import ComplexPar
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.pipelines.live.carried import Carried
+from capar.pipelines.live.decided_until import Handling, decided_at, nameless, undecided
 from capar.pipelines.live.frames import FrameBuffer, Poses, Window
 from capar.pipelines.live.ledgers import FactLedger, RuleMemory, SegmentEvent, SegmentLedger
 from capar.pipelines.live.rule_process import RuleProcess
-from capar.pipelines.live.undecided import Handling, decided_at, nameless, undecided
 from capar.pipelines.observation import observe_measured
 from capar_rules.borders.ticks import in_frames, times
 from capar_rules.engine.profiles import DEFAULT, Profile, profile

@@ -40,7 +40,7 @@ from extractors.readers.bundle.bodies import (
     to_world,
 )
 from extractors.readers.bundle.shapes import Frame, WorldPose, build_shape, under_object
-from extractors.readers.files import source_of
+from extractors.readers.file_access import source_of
 from extractors.readers.names import (
     WHOLES,
     constant_name,

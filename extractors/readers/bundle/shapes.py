@@ -15,7 +15,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.model import geometry
 from capar.model.capture import Notice, Shape, ShapeSource, Source, TagObject, TagType, notice
 from capar.model.errors import FileError
-from extractors.readers.files import check_file, check_zip, neighbours, source_of
+from extractors.readers.file_access import check_file, check_zip, neighbours, source_of
 from extractors.readers.recording import UNITS
 from extractors.readers.schema.capture import (
     CapsulesShape,

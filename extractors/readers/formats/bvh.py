@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from capar.model import geometry
 from capar.model.capture import notice
 from capar.model.errors import FileError
-from extractors.readers.files import number_of, opens_with, read_rows, read_text, source_of
+from extractors.readers.file_access import number_of, opens_with, read_rows, read_text, source_of
 from extractors.readers.recording import Recording, track, uniform_clock
 
 CHANNELS = tuple(f"{axis}{kind}" for kind in ("position", "rotation") for axis in "XYZ")

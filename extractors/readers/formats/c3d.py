@@ -13,7 +13,7 @@ from jaxtyping import Float
 
 from capar.model.capture import Stream
 from capar.model.errors import FileError
-from extractors.readers.files import read_bytes, source_of
+from extractors.readers.file_access import read_bytes, source_of
 from extractors.readers.recording import UNITS, Recording, track_of_matrices, uniform_clock
 
 BLOCK = 512

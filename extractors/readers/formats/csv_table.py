@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from capar.model.errors import FileError, UnknownNameError
-from extractors.readers.files import number_of, read_rows, read_text, source_of
+from extractors.readers.file_access import number_of, read_rows, read_text, source_of
 from extractors.readers.recording import Recording, check_rate, track, uniform_clock
 
 OPTIONS = frozenset({"time", "columns", "order", "rate_hz", "delimiter"})

@@ -11,7 +11,7 @@ import numpy as np
 
 from capar.model.capture import Stream
 from capar.model.errors import FileError
-from extractors.readers.files import EXPANDED_LIMIT, read_bytes, source_of
+from extractors.readers.file_access import EXPANDED_LIMIT, read_bytes, source_of
 from extractors.readers.recording import Recording, track_of_matrices
 
 OPTIONS = frozenset({"folder", "time_unit_s"})

@@ -11,7 +11,7 @@ from jaxtyping import Float
 from numpy.lib import format as npy
 
 from capar.model.errors import FileError, UnknownNameError
-from extractors.readers.files import EXPANDED_LIMIT, check_zip, source_of
+from extractors.readers.file_access import EXPANDED_LIMIT, check_zip, source_of
 from extractors.readers.formats.csv_table import ORDERS
 from extractors.readers.recording import Recording, check_rate, track, uniform_clock
 

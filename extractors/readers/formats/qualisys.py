@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from capar.model.errors import FileError, UnknownNameError
-from extractors.readers.files import number_of, opens_with, read_rows, read_text, source_of
+from extractors.readers.file_access import number_of, opens_with, read_rows, read_text, source_of
 from extractors.readers.recording import Recording, iso_time, track_of_matrices, uniform_clock
 
 MILLIMETRE = 0.001

@@ -9,7 +9,7 @@ import numpy as np
 
 from capar.model.capture import notice
 from capar.model.errors import FileError
-from extractors.readers.files import source_of
+from extractors.readers.file_access import source_of
 from extractors.readers.recording import Recording, iso_of_stamp, track
 
 Sample = tuple[str, int, tuple[float, ...]]

@@ -7,7 +7,7 @@ import numpy as np
 
 from capar.model.capture import notice
 from capar.model.errors import FileError, UnknownNameError
-from extractors.readers.files import number_of, opens_with, read_rows, read_text, source_of
+from extractors.readers.file_access import number_of, opens_with, read_rows, read_text, source_of
 from extractors.readers.recording import UNITS, Recording, contradicted_rate, unrounded
 
 

@@ -22,7 +22,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticUndefined
 
 from capar.model.errors import CaparError, FileError, UnknownNameError
-from extractors.readers.files import read_text
+from extractors.readers.file_access import read_text
 from extractors.readers.names import constant_name
 
 

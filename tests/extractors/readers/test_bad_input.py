@@ -11,7 +11,7 @@ import pytest
 
 from capar.model.errors import CaparError, CaptureError, FileError
 from extractors.readers.bundle.shapes import MESH_LIMIT, read_mesh
-from extractors.readers.files import EXPANDED_LIMIT
+from extractors.readers.file_access import EXPANDED_LIMIT
 from extractors.readers.registry import read_recording
 
 

@@ -13,12 +13,12 @@ from capar.body.anthropometry import Measures, ready_made
 from capar.body.human import Human
 from capar.body.performing import RELAXED, Performance, perform
 from capar.body.recording import HAND_SEGMENTS
-from capar.body.scenes import Scene as BodyScene
-from capar.body.scenes import Thing as BodyThing
-from capar.body.scenes import scene as body_scene
 from capar.body.scripts import SIDES, Script
 from capar.body.shapes import form_mesh, forms
 from capar.body.skeleton import HEEL, skeleton
+from capar.body.virtual_scenes import Scene as BodyScene
+from capar.body.virtual_scenes import Thing as BodyThing
+from capar.body.virtual_scenes import scene as body_scene
 from capar.model.capture import TagType
 from scenes.hands.clearance import Placed, gap
 from scenes.hands.paths import Body, Poses, Times, min_jerk, pose

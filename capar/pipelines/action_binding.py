@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from capar.body.human import Human
-from capar.body.scenes import Thing
+from capar.body.virtual_scenes import Thing
 from capar.model.errors import UnknownNameError
 from capar.pipelines.recordings import Recording, observed_actions
 from capar.regeneration.roles import (
