@@ -59,8 +59,7 @@ from capar.model.notices import Notice, Value, notice
 from extractors.bodies.bodies import Bodies, BodyGeometry, bodies_of, trunk_sensor
 from extractors.bodies.poses import Poses
 from extractors.calibration import calibrated, check_clock, thresholds_of
-from extractors.contact.blows import arrivals, blows
-from extractors.contact.contacts import Contact, contacts
+from extractors.contact.contacts import Contact, arrivals, blows, contacts
 from extractors.contact.normals import contact_normal
 from extractors.contact.touch_distances import forget_touchable, touching_part
 from extractors.faults.faults import faults

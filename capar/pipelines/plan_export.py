@@ -10,7 +10,7 @@ from capar.model.facts import Fact, LookingAt, RateMhz
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
-from kb.encode.facts import stored_facts
+from kb.encode.observation import stored_facts
 from kb.encode.shared import kind_of
 from ontology import CAPAR
 

@@ -14,7 +14,7 @@ from capar_rules.lint.checking import admitted_profile
 from capar_rules.pars.inference import infer
 from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary
-from kb.encode.facts import stored_facts
+from kb.encode.observation import stored_facts
 from kb.lookup.observations import NamedSegment, named_segments, replace_all, source_files
 
 NOTHING = "none"

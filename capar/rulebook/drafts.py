@@ -20,7 +20,7 @@ from capar_rules.lint.world_checks import rivals
 from capar_rules.pars.inference import infer
 from extractors.readers.bundle.capture_toml import read_capture
 from kb.actionary import Actionary
-from kb.encode.facts import stored_facts
+from kb.encode.observation import stored_facts
 
 
 def rule_from_features(

@@ -18,8 +18,7 @@ from capar.model.errors import CaparError
 from capar.model.facts import Touching
 from extractors.bodies.bodies import BodyGeometry, geometry_of
 from extractors.calibration import calibrate, set_values
-from extractors.contact.blows import blow, set_going
-from extractors.contact.contacts import bridged
+from extractors.contact.contacts import blow, bridged, set_going
 from extractors.contact.normals import facing_normal
 from extractors.contact.proximity import (
     Body,

@@ -19,7 +19,7 @@ from capar.model.facts import Rolls
 from capar.pipelines.observation import observe
 from extractors.bodies.bodies import BodyGeometry, geometry_of
 from extractors.bodies.poses import Poses, poses_of
-from extractors.contact.blows import settled_ends
+from extractors.contact.contacts import settled_ends
 from extractors.measure import _track
 from extractors.motion.motion_edges import (
     GROWN,
