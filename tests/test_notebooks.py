@@ -46,7 +46,7 @@ def test_the_first_steps_observe_look_ask_and_explain(capsys: pytest.CaptureFixt
     seen = names["seen"]
     assert printed.startswith("The tall man")
     assert all(word in printed for word in ("mug", "right hand", "drank"))
-    assert "It would be Push" in printed
+    assert "Push (push_with.lp:2) would need" in printed
     about_mug = {each.name for each in seen.segments if "mug" in each.objects}
     assert {row["action"] for row in values[3]} == about_mug
     counts = {row["name"]: row["often"] for row in names["rows"]}

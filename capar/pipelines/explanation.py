@@ -74,9 +74,7 @@ class Explained:
         if name == segment.name:
             raise RuleError(f"segment {segment.index} of {segment.ee!r} is {name} already")
         found = self.explainer.nearest_rules(segment, name)
-        return [
-            one if one.vague else replace(one, failing=self._filled(one.failing)) for one in found
-        ]
+        return [replace(one, failing=self._filled(one.failing)) for one in found]
 
     def _filled(self, conditions: Sequence[Condition]) -> tuple[Condition, ...]:
         return tuple(map(self.measures.completed, conditions))

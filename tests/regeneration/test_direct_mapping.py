@@ -61,7 +61,7 @@ def test_the_command_prints_gates_and_departures_and_writes_a_capture(
     assert exit_code(monkeypatch, "map", str(recorded), "--output", str(out)) == 0
     printed = capsys.readouterr().out
     assert "penetration" in printed
-    assert "from the recorded way: 0." in printed
+    assert "from the recorded way" in printed
     again = observed_source(out).observation
     assert again.complex_par.signature == _source("touch").observation.complex_par.signature
     assert exit_code(monkeypatch, "map", str(recorded), "--output", str(out)) == 2
