@@ -101,6 +101,8 @@ class Measures:
     def _completed(self, asked: Measured) -> Measured | None:
         if asked.value is not None:
             return asked
+        if "_" in asked.bodies:  # a rule asks for any body
+            return None
         found = self._valued(asked)
         if found is not None and asked.quantity == "motion" and not found.holds:
             turning, (name,) = QUANTITIES["turning"], asked.bodies

@@ -17,58 +17,14 @@ from scenes.hands.things import Thing
 from scenes.people.stage import Limb, planted_m
 from scenes.score import judged
 
-NAMES = frozenset(
-    {
-        "Reach",
-        "Touch",
-        "TouchWith",
-        "MoveObj",
-        "MoveObjTo",
-        "Hit",
-        "ResumePosture",
-        "Rest",
-        "PostureChange",
-        "Withdraw",
-        "Lift",
-        "Carry",
-        "Lower",
-        "Raise",
-        "PutDown",
-        "Push",
-        "Pull",
-        "Slide",
-        "Turn",
-        "Tilt",
-        "Pour",
-        "Shake",
-        "Stir",
-        "Wipe",
-        "Roll",
-        "Throw",
-        "Catch",
-        "Give",
-        "Receive",
-        "Accept",
-        "HandOver",
-        "Drink",
-        "Clap",
-        "Salute",
-        "TouchOneself",
-        "Kick",
-        "LetGo",
-        "HitAway",
-        "Open",
-        "Close",
-        "Cut",
-        "Stand",
-        "Step",
-        "Walk",
-        "StandOnOneLeg",
-        "RestFoot",
-        "Wave",
-        "Point",
-    }
-)
+NAMES = frozenset({
+    "Reach", "Touch", "TouchWith", "MoveObj", "MoveObjTo", "Hit", "ResumePosture", "Rest",
+    "PostureChange", "Withdraw", "Lift", "Carry", "Lower", "Raise", "PutDown", "Push", "Pull",
+    "Slide", "Turn", "Tilt", "Pour", "Shake", "Stir", "Wipe", "Roll", "Throw", "Catch", "Give",
+    "Receive", "Accept", "HandOver", "Drink", "Clap", "Salute", "TouchOneself", "Kick", "LetGo",
+    "HitAway", "Open", "Close", "Cut", "Stand", "Step", "Walk", "StandOnOneLeg", "RestFoot",
+    "Wave", "Point",
+})  # fmt: skip
 """The vocabulary of hands and feet."""
 
 ABOUT_NOTHING = frozenset({"Rest", "PostureChange", "Wave", "Point"})
