@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from capar.model.capture import TagType
-from scenes.batteries import BATTERIES, SOME
+from scenes.batteries import SOME
 from scenes.hands.clearance import Placed, gap, moving
 from scenes.hands.performer import Hand
 from scenes.hands.scene import Scene
@@ -30,11 +30,6 @@ NAMES = frozenset({
 ABOUT_NOTHING = frozenset({"Rest", "PostureChange", "Wave", "Point"})
 """Steps that have no object."""
 
-SOLVED = frozenset({"people"})
-"""Batteries with virtual bodies, which take seconds to solve."""
-
-FEWEST = {"people": 45}
-"""How many scenes a battery has at least, where they are not sixty, and units at least sixty."""
 
 HELD_M = 0.003
 """A hand is no further from what it touches [m]."""
@@ -86,21 +81,6 @@ def pairs(stage: Stage) -> Iterator[tuple[Hand | Thing, Hand | Thing]]:
     for index, first in enumerate(bodies):
         for second in [*bodies[index + 1 :], *rest]:
             yield first, second
-
-
-@pytest.mark.parametrize(
-    ("name", "battery"),
-    [
-        pytest.param(name, battery, id=name, marks=[pytest.mark.long] if name in SOLVED else [])
-        for name, battery in BATTERIES.items()
-    ],
-)
-def test_there_are_enough_scenes_and_few_alternatives(name: str, battery: dict[str, Scene]) -> None:
-    """At least sixty units in enough scenes, and an alternative for at most one unit in ten."""
-    units = [unit for scene in battery.values() for unit in scene.stage.expectation(100.0).units]
-    assert len(battery) >= FEWEST.get(name, 60)
-    assert len(units) >= 60
-    assert sum(bool(unit.alternative) for unit in units) <= len(units) / 10
 
 
 @each_scene
