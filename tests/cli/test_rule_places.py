@@ -180,13 +180,3 @@ def test_a_rule_on_which_another_rests_stays():
     assert sip.exists()
     run("rules", "remove", "Gulp")
     assert run("rules", "remove", "Sip") == f"removed {sip}\n"
-
-
-def test_a_rule_is_drafted_from_a_stored_observation():
-    run("observe", DEMO, "--actionary", "known")
-    drafted = run("rules", "new", "Sip", "--from", "drink_from_mug_tall_man/right_hand/3",
-                  "--actionary", "known")  # fmt: skip
-    assert drafted == run("rules", "new", "Sip", "--from", f"{DEMO}/right_hand/3")
-    with pytest.raises(RuleError, match="say --profile extended"):
-        run("rules", "new", "Sip", "--from", "drink_from_mug_tall_man/right_hand/3",
-            "--actionary", "known", "--profile", "thesis")  # fmt: skip

@@ -92,8 +92,8 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
         Actionary.open(tmp_path / "file")
 
 
-def test_ten_kills_lose_nothing_and_tear_nothing(tmp_path: Path) -> None:
-    outcome = kill.run(10, seed=1, folder=tmp_path)
+def test_kills_lose_nothing_and_tear_nothing(tmp_path: Path) -> None:
+    outcome = kill.run(5, seed=1, folder=tmp_path)
     assert outcome.problems == ()
-    assert outcome.kills == 10
+    assert outcome.kills == 5
     assert outcome.acknowledged > 0
