@@ -12,6 +12,7 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from multiprocessing import get_context
+from types import ModuleType
 
 from capar.model.errors import CaparError
 from capar.model.facts import Fact
@@ -60,11 +61,7 @@ class RuleProcess:
             RuleError: The rules have a fault, or not exactly one answer.
         """
         if self._left <= AHEAD and self._next is None:
-            # A new interpreter: a fork would keep the terms of this one.
-            self._next = ProcessPoolExecutor(
-                1, get_context("spawn"), _start, (self._rules, tuple(facts))
-            )
-            self._next.submit(int)
+            self._next = _worker(self._rules, tuple(facts))
         if self._left <= 0 and self._next is not None:
             self._end_worker()
             self._worker, self._next, self._left = self._next, None, self._asks
@@ -91,6 +88,22 @@ class RuleProcess:
         if self._worker is not None:
             self._worker.shutdown()
         self._worker = None
+
+
+def _worker(rules: Profile, facts: Sequence[Fact]) -> ProcessPoolExecutor:
+    """A worker in a new interpreter, as a fork would keep the terms of this one.
+
+    It starts at its first task, while this process has no main module to show: else it would run a
+    user's script from its beginning.
+    """
+    made = ProcessPoolExecutor(1, get_context("spawn"), _start, (rules, facts))
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        made.submit(int)
+    finally:
+        sys.modules["__main__"] = main
+    return made
 
 
 def _start(rules: Profile, facts: Sequence[Fact]) -> None:
