@@ -231,11 +231,11 @@ def _panel(every: Sequence[Measured], series: Series, rate_hz: float) -> Panel:
             # Where the curve has the value, near the frame that counts: rules compare some
             # quantities at an event that is merged with the border.
             frame = series.frame(one.first, one.last)
-            near = np.abs(series.frames - frame) <= times().merge_ms / 1000.0 * rate_hz
+            away = np.abs(series.frames - frame)
             off = np.abs(series.values * scale - one.value)
-            off[~near | np.isnan(off)] = np.inf
+            off[(away > times().merge_ms / 1000.0 * rate_hz) | np.isnan(off)] = np.inf
             if np.isfinite(off).any():
-                frame = int(series.frames[np.argmin(off)])
+                frame = int(series.frames[np.lexsort((away, off))[0]])
             marks[frame / rate_hz, one.value, one.value_text] = None
     return Panel(
         f"{first.label} [{unit}]" if unit else first.label,

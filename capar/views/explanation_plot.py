@@ -107,10 +107,11 @@ def _draw_segments(at: "Axes", plot: Plot) -> None:
     for start, end, name in plot.segments:
         own = (start, end) == plot.segment
         at.axvspan(start, end, facecolor=SHADE if own else "white", edgecolor=QUIET)
-        middle = 0.5 * (max(start, plot.span[0]) + min(end, plot.span[1]))
-        if plot.span[0] < middle < plot.span[1]:
+        first, last = max(start, plot.span[0]), min(end, plot.span[1])
+        room = LETTERS * (last - first) / (plot.span[1] - plot.span[0])
+        if len(name) < room:  # a name that would run into the next one is left out
             weight = "bold" if own else "normal"
-            at.text(middle, 0.5, name, ha="center", va="center", weight=weight, clip_on=True)
+            at.text(0.5 * (first + last), 0.5, name, ha="center", va="center", weight=weight)
 
 
 def _draw_panel(at: "Axes", panel: Panel, plot: Plot) -> None:
@@ -128,4 +129,4 @@ def _draw_panel(at: "Axes", panel: Panel, plot: Plot) -> None:
     at.set_ylabel(panel.unit)
     at.margins(y=0.2)
     if panel.limits or panel.bars:
-        at.legend(loc="upper right", fontsize=7, framealpha=0.7)
+        at.legend(loc="best", fontsize=7, framealpha=0.7)
