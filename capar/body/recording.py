@@ -220,6 +220,7 @@ def _toml(capture: Capture) -> list[str]:
         out += [f"orientation = {_list(turn)}"] * turned
         out += [f'shape = {{ mesh = "{thing.name}.obj" }}'] * (thing.shape is not None)
         out += [f"mass_kg = {thing.mass_kg}"] * (thing.mass_kg is not None)
+        out += [f'part_of = "{thing.part_of}"'] * bool(thing.part_of)
     return out
 
 

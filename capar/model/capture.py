@@ -184,6 +184,12 @@ class TagObject:
     #: Displacement below which it counts as still [m], where it differs from the capture's
     motion_floor_m: float | None = None
     mass_kg: float | None = None
+    part_of: str = ""  #: The object whose part it is, on a hinge or a rail; empty if not stated
+    #: Its turn on its hinge [degrees] or shift on its rail [m] where it is closed. Counted from
+    #: where its axes are parallel to its base's, and its origin level with its base's, about or
+    #: along the axis whose largest part in the base's frame is positive.
+    closed_deg: float | None = None
+    closed_m: float | None = None
     agent: str = ""  #: Of a SELF object, the agent whose body part it is; empty as for a sensor
 
 

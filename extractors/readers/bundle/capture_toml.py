@@ -383,6 +383,9 @@ def _objects(bundle: _Bundle, shapes: Mapping[str, Shape | None]) -> list[TagObj
         assumed = "; ".join(filter(None, (entry.assumed, derivation)))
         if shape and assumed:
             shape = replace(shape, source=ShapeSource.ASSUMED)
+        names = [each.name for each in bundle.objects if each.name != entry.name]
+        if entry.part_of and entry.part_of not in names:
+            raise entry.unknown("object", entry.part_of, names, "part_of")
         built[entry.name] = TagObject(
             name=entry.name,
             tag=TagType(entry.tag),
@@ -393,6 +396,9 @@ def _objects(bundle: _Bundle, shapes: Mapping[str, Shape | None]) -> list[TagObj
             deformable=entry.deformable,
             motion_floor_m=entry.motion_floor_m,
             mass_kg=entry.mass_kg,
+            part_of=entry.part_of,
+            closed_deg=entry.closed_deg,
+            closed_m=entry.closed_m,
             agent=entry.agent,
         )
     return [built[entry.name] for entry in bundle.objects]

@@ -282,6 +282,25 @@ class ObjectEntry(Tracked, ObjectTraits):
     tag: Literal["self", "fixed", "mobile"] = key(
         "A part of the agent, fixed in the world, or able to be moved."
     )
+    part_of: str = key(
+        "The object that it is a part of, on a hinge or a rail; found by the motion if not given.",
+        "",
+    )
+    closed_deg: float | None = key(
+        "Its turn on its hinge where it is closed, from where its axes are parallel to those of "
+        "its base, about the axis whose largest part in the base's frame is positive.",
+        None,
+        unit="degrees",
+        beside="part_of",
+        apart="closed_m",
+    )
+    closed_m: float | None = key(
+        "Its shift on its rail where it is closed, from where its origin is level with its "
+        "base's, along the axis whose largest part in the base's frame is positive.",
+        None,
+        unit="m",
+        beside="part_of",
+    )
     position: Annotated[list[float], Field(min_length=2, max_length=3)] | None = key(
         "x, y and z in the world, whose z axis points up whatever ``up`` says of the files; "
         "x and y only, where ``top_at_bottom_of`` gives the height.",

@@ -155,6 +155,9 @@ class Stage:
                 else stream(each.body, tracked=each.tag is not TagType.FIXED),
                 surface(each.form),
                 kind=each.form.kind,
+                part_of=each.part_of,
+                closed_deg=each.closed_deg,
+                closed_m=each.closed_m,
                 agent=known[each.name].agent if each.name in known else "",
             )
             for each in self.things

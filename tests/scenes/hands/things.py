@@ -29,6 +29,12 @@ class Thing:
     free: list[tuple[float, float]] = field(default_factory=list)
     """When it moves without being held: it was struck or thrown [s]."""
 
+    part_of: str = ""
+    """The thing whose part it is, where the capture says so."""
+
+    closed_deg: float | None = None
+    closed_m: float | None = None
+
     @property
     def name(self) -> str:
         """Its name in the capture."""
