@@ -7,7 +7,7 @@ from capar_rules.movers.movers import movers
 
 SCENE = """
 frames(0,400) rate_mhz(100000) link(right_hand,hand,right) link(left_hand,hand,left)
-tag(mug,mobile) tag(tray,mobile) tag(table,fixed)
+tag(mug,mobile) tag(tray,mobile) tag(lid,mobile) tag(table,fixed)
 """
 MOVES = "displaced(mug,100,200) travels(mug,110,190)"
 HELD = "touching(right_hand,mug,90,210) moves_with(mug,right_hand,100,200,0)"
@@ -91,6 +91,15 @@ STORIES = {
     "It swings to and fro, and nobody ever set it going.": (
         f"{MOVES} swings(mug,100,200)",
         ["moved_by(mug,nobody,unknown,100,200)"],
+    ),
+    "It slides on out of a hand, and strikes a lid that touches it back.": (
+        "displaced(mug,100,170) moves_with(mug,left_hand,100,140,0) displaced(lid,160,170) "
+        "touching(mug,lid,160,170) touching(lid,mug,160,170)",
+        [
+            "moved_by(lid,mug,through,160,170)",
+            "moved_by(mug,left_hand,carried,100,140)",
+            "moved_by(mug,mug,set_going,141,170)",
+        ],
     ),
     "It goes with the head, which has no surface.": (
         f"{MOVES} moves_with(mug,head,100,200,120)",
