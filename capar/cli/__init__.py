@@ -10,7 +10,7 @@ from typer.core import TyperGroup
 
 from capar import __version__
 from capar.cli.output import error_message
-from capar.model.errors import CaparError, UnknownNameError
+from capar.model.errors import CaparError, NoAnswerError, UnknownNameError
 
 GROUPS = {
     "Look at captures": "observe.demo captures.inspect captures.view captures.facts "
@@ -116,10 +116,15 @@ def _root(
 
 
 def main() -> None:
-    """Run a command; a user's mistake goes to standard error and exits with 2."""
+    """Run a command; a user's mistake exits with 2, rules that contradict each other with 1."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads spin, and sum in any order
     try:
         app()
+    except NoAnswerError as error:
+        from capar.cli.output import save_contradiction
+
+        save_contradiction(error)
+        sys.exit(1)
     except (CaparError, OSError) as error:
         message = error_message(error) if isinstance(error, OSError) else error
         typer.echo(f"capar: {message}", err=True)

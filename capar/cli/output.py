@@ -6,13 +6,14 @@ import os
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from itertools import count
 from pathlib import Path
 from shutil import copymode
 from typing import TYPE_CHECKING, Any
 
 import typer
 
-from capar.model.errors import FileError
+from capar.model.errors import FileError, NoAnswerError
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -164,6 +165,26 @@ def save(path: Path, content: "str | bytes | Callable[[Path], object]", did: str
         else:
             draft.write_bytes(content if isinstance(content, bytes) else content.encode())
     typer.echo(f"{did} {path}", err=True)
+
+
+def save_contradiction(error: NoAnswerError) -> None:
+    """Report rules without an answer, and write the fewest facts that show it, to be sent."""
+    from capar import __version__
+    from capar.model.facts import program
+    from capar_rules.engine.solver import least_contradiction
+
+    files, facts = least_contradiction(error)
+    named = ", ".join(map(str, files))
+    typer.echo(f"capar: {error}: {named}", err=True)
+    if not facts:
+        return
+    paths = (Path(f"no_answer_{files[0].stem}_{number}.lp") for number in count(1))
+    about = f"{len(facts)} of {len(error.measured)} measured facts, without an answer: {named}"
+    try:
+        path = next(path for path in paths if not path.exists())
+        save(path, f"% capar {__version__}: {about}.\n{program(facts)}", "please send us")
+    except OSError as fault:
+        typer.echo(f"capar: {error_message(fault)}", err=True)
 
 
 def check_picture(path: Path | None) -> None:

@@ -1,9 +1,9 @@
 """Mistakes that a user can make, each saying what, where, and what would have been right."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 MOST_LISTED = 20  # so many names that exist are all listed; of more, the nearest and their number
 
@@ -85,6 +85,23 @@ class CaptureError(CaparError):
 
 class RuleError(CaparError):
     """A rule file that clingo refuses, or rules without exactly one answer."""
+
+
+class NoAnswerError(RuleError):
+    """Rules that contradict each other over some facts.
+
+    Attributes:
+        files: The rule files.
+        facts: Those over which the solver found no answer.
+        measured: What was measured, from which they were made.
+        ask: Asks the same about other measurements.
+    """
+
+    def __init__(self, files: Sequence[Path], facts: Any) -> None:
+        self.files, self.facts = tuple(files), facts
+        self.measured: Sequence[Any] = ()
+        self.ask: Callable[[Any], object] = lambda facts: None
+        super().__init__("the rules contradict each other over these facts: they have no answer")
 
 
 class FactError(CaparError):

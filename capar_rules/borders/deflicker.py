@@ -14,7 +14,7 @@ from capar.model.facts import (
     RateMhz,
     Tag,
 )
-from capar_rules.engine.solver import best, rule_file
+from capar_rules.engine.solver import asking, best, rule_file
 
 Key = tuple[str, str, str]
 """A relation: touching, moving or resting, the body, and the other body, or the same."""
@@ -46,6 +46,7 @@ class Stretch(Fact):
     last: int
 
 
+@asking
 def steady(facts: Sequence[Fact]) -> tuple[Fact, ...]:
     """The facts, with contact, motion and rest that change as seldom as measurements allow.
 
@@ -58,11 +59,12 @@ def steady(facts: Sequence[Fact]) -> tuple[Fact, ...]:
     ends = next((each for each in facts if isinstance(each, Frames)), Frames(0, 0))
     stretches = {key: tuple(_stretches(spans, ends)) for key, spans in measured.items()}
     keys = sorted(key for key, between in stretches.items() if len(between) > 2)
-    once = [(key, stretches[key]) for key in keys if _swapped(key) not in keys or key[1] <= key[2]]
+    twins = {key for key in keys if stretches.get(_swapped(key)) == stretches[key]}
+    once = [(key, stretches[key]) for key in keys if key not in twins or key[1] <= key[2]]
     doubted = _doubted(facts, once)
     if not doubted:
         return tuple(facts)
-    doubted |= {_swapped(key): places for key, places in doubted.items() if _swapped(key) in keys}
+    doubted |= {_swapped(key): places for key, places in doubted.items() if key in twins}
     corrected = {key: _corrected(stretches[key], places) for key, places in doubted.items()}
     corrections = (
         FlickerCorrection(*key[1:], stretch[1], stretch[2], _taken(key[0], stretch[0]))

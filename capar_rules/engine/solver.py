@@ -1,17 +1,19 @@
 """Facts in, atoms out: rules grounded and solved by clingo, in slices and within limits."""
 
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, wraps
 from hashlib import sha256
 from importlib import resources
 from itertools import chain, islice
 from pathlib import Path
+from time import monotonic
+from typing import Any, ParamSpec, TypeVar, cast
 
 import clingo
 
 from capar.model.capture import NAME
-from capar.model.errors import RuleError
+from capar.model.errors import NoAnswerError, RuleError
 from capar.model.facts import Fact, program, signatures
 from capar_rules.engine.syntax import Signature, Statement, asked_for, firing, parse
 
@@ -59,6 +61,10 @@ Term = int | str | tuple["Term", ...]
 """A value of the rules: a number, a name or text, or a compound as (functor, arguments...)."""
 
 
+_Asked = ParamSpec("_Asked")
+_Found = TypeVar("_Found")
+
+
 @dataclass(frozen=True)
 class Answer:
     """The one answer of a program: its shown atoms."""
@@ -87,9 +93,18 @@ def solve(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
     """The one answer of the rule files over the facts.
 
     Raises:
-        RuleError: The solver has a remark of any kind, or there is no answer, or more than one.
+        NoAnswerError: There is none.
+        RuleError: The solver has a remark of any kind, or there is more than one.
     """
-    return _answer(_grounded(tuple(files), facts, "--models=2"))
+    answers = _answers(files, facts, "--models=2")
+    if len(answers) > 1:
+        first, second = (set(each.atoms) for each in answers)
+        name, arguments = sorted(first ^ second, key=str)[0]
+        raise RuleError(
+            "the rules have more than one answer over these facts; they differ first in "
+            f"{name}{arguments}: rules may not choose"
+        )
+    return answers[0]
 
 
 def best(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
@@ -99,14 +114,74 @@ def best(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
     one thread without chance over facts in their order, takes the same one each time.
 
     Raises:
-        RuleError: The solver has a remark of any kind, or there is no answer.
+        NoAnswerError: There is none.
+        RuleError: The solver has a remark of any kind.
     """
-    control = _grounded(tuple(files), facts, "--opt-strategy=usc,stratify")
+    return _answers(files, facts, "--opt-strategy=usc,stratify")[-1]
+
+
+def _answers(files: Iterable[Path], facts: str | Iterable[Fact], option: str) -> list[Answer]:
+    files, facts = tuple(files), facts if isinstance(facts, str) else tuple(facts)
     found: list[Answer] = []
-    control.solve(on_model=lambda model: found.append(_shown(model)))
+    _grounded(files, facts, option).solve(on_model=lambda model: found.append(_shown(model)))
     if not found:
-        raise RuleError(_CONTRADICTION)
-    return found[-1]
+        raise NoAnswerError(files, facts)
+    return found
+
+
+def asking(function: Callable[_Asked, _Found]) -> Callable[_Asked, _Found]:
+    """A function of what was measured, whose ``NoAnswerError`` can be asked about less of it."""
+
+    @wraps(function)
+    def asked(*given: _Asked.args, **options: _Asked.kwargs) -> _Found:
+        try:
+            return function(*given, **options)
+        except NoAnswerError as error:
+            error.measured = cast(Any, given[0])
+            error.ask = lambda facts: cast(Any, function)(facts, **options)
+            raise
+
+    return asked
+
+
+def least_contradiction(
+    error: NoAnswerError, *, within_s: float = 20.0
+) -> tuple[tuple[Path, ...], tuple[Fact, ...]]:
+    """The rule files at fault, and the fewest measured facts found without an answer.
+
+    Shipped rules are at fault if they have no answer by themselves, else files of the user.
+    ``within_s``: how long facts are left out: halves, quarters and so on, in order of time [s].
+    """
+    end = monotonic() + within_s
+    facts = sorted(error.measured, key=lambda fact: (*fact.ends(), -1)[0])
+    size, last = len(facts) // 2, error
+    while size and monotonic() < end:
+        before, at = len(facts), 0
+        while at < len(facts) and monotonic() < end:
+            fewer = facts[:at] + facts[at + size :]
+            try:
+                error.ask(fewer)
+            except NoAnswerError as again:
+                facts, last = fewer, again
+                continue
+            except (RuleError, LookupError, ValueError, StopIteration):
+                pass  # without these facts nothing can be asked
+            at += size
+        size = size // 2 or int(len(facts) < before)
+    shipped = tuple(each for each in last.files if each.is_relative_to(rule_file("")))
+    added = tuple(each for each in last.files if each not in shipped)
+    if not added or not _has_answer(shipped, last.facts):
+        return shipped[:1], tuple(facts)
+    alone = (each for each in added if not _has_answer((*shipped, each), last.facts))
+    return tuple(alone) or added, tuple(facts)
+
+
+def _has_answer(files: Iterable[Path], facts: Iterable[Fact]) -> bool:
+    try:
+        solve(files, facts)
+    except NoAnswerError:
+        return False
+    return True
 
 
 def _texts(facts: Iterable[Fact]) -> Iterator[str]:
@@ -161,9 +236,6 @@ def _read(path: Path, changed_ns: int, size: int) -> tuple[bytes, tuple[Path, ..
     return content, tuple(path.parent / name for name in names)
 
 
-_CONTRADICTION = "the rules contradict each other over these facts: they have no answer"
-
-
 def _grounded(files: Iterable[Path], facts: str | Iterable[Fact], option: str) -> clingo.Control:
     messages: list[str] = []
 
@@ -213,21 +285,6 @@ def _program(
 def _rule_base(files: tuple[Path, ...], state: tuple[bytes, ...]) -> RuleBase:
     """The rules of files while these hold what they do."""
     return RuleBase(files)
-
-
-def _answer(control: clingo.Control) -> Answer:
-    answers: list[Answer] = []
-    control.solve(on_model=lambda model: answers.append(_shown(model)))
-    if not answers:
-        raise RuleError(_CONTRADICTION)
-    if len(answers) > 1:
-        first, second = (set(each.atoms) for each in answers)
-        name, arguments = sorted(first ^ second, key=str)[0]
-        raise RuleError(
-            "the rules have more than one answer over these facts; they differ first in "
-            f"{name}{arguments}: rules may not choose"
-        )
-    return answers[0]
 
 
 def _shown(model: clingo.Model) -> Answer:

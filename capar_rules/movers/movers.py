@@ -22,7 +22,7 @@ from capar.model.facts import (
     Touching,
     Travels,
 )
-from capar_rules.engine.solver import rule_file, solve
+from capar_rules.engine.solver import asking, rule_file, solve
 
 RULES = "movers/movers.lp"
 
@@ -62,6 +62,7 @@ class With(Fact):
     gap: int
 
 
+@asking
 def movers(facts: Sequence[Fact]) -> tuple[MovedBy, ...]:
     """What moves each object, through all parts of its motion, in order of object and time.
 

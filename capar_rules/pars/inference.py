@@ -17,7 +17,7 @@ from capar.model.observation import (
 from capar.model.par import UNKNOWN, FeatureSet
 from capar_rules.borders.numbering import Tick, number_borders
 from capar_rules.engine.profiles import Profile
-from capar_rules.engine.solver import Answer, Term, solve
+from capar_rules.engine.solver import Answer, Term, asking, solve
 
 
 def joint_actions(
@@ -99,6 +99,7 @@ class Inference:
     """Which segments are one action, or serve another one; sorted."""
 
 
+@asking
 def infer(facts: Sequence[Fact], *, profile: Profile) -> Inference:
     """Segments, their names, and their conditions.
 
