@@ -13,6 +13,7 @@ from typing import Any, cast
 import numpy as np
 from jaxtyping import Int
 
+from capar.model import geometry
 from capar.model.calibration import Calibration, Found
 from capar.model.capture import Capture, Role, Sensor, ShapeSource, TagObject, TagType
 from capar.model.facts import (
@@ -38,6 +39,7 @@ from capar.model.facts import (
     Observed,
     OfAgent,
     Opening,
+    PartOf,
     Passage,
     Pause,
     Phase,
@@ -85,7 +87,7 @@ from extractors.relations.arrangement import (
     sides,
 )
 from extractors.relations.attention import Attention, attention, seeing, sight
-from extractors.relations.guides import Guide, guide_of, turns_on_guide
+from extractors.relations.guides import Guide, Part, guide_of, parts, turns_on_guide
 from extractors.relations.places import (
     FROM_THE_BEGINNING,
     Sums,
@@ -96,7 +98,7 @@ from extractors.relations.places import (
 )
 from extractors.relations.support import bearing, rides, seated
 from extractors.signals.filters import long_gaps, speed
-from extractors.signals.intervals import Interval, intervals
+from extractors.signals.intervals import Interval, intervals, mask
 from extractors.signals.zero_crossings import horizon_frames, pauses, zero_crossings
 from extractors.thresholds import Thresholds
 
@@ -105,6 +107,9 @@ PASSED = ("inside", "above")
 
 SHIFTS, NEAR = "shifts", "near"
 """An end-effector goes to another place on what it touches; it is within reach, without touch."""
+
+BESIDE_M = 1e-6
+"""A thing that is touched by its part is so much farther than the part [m]: the part is named."""
 
 ANY = "any"
 """What an empty field of a purpose is in a fact."""
@@ -164,14 +169,55 @@ class _Trial:
         """The axis of a body that points up where it first rests, in its own frame."""
         return np.array(self.calibration.body(name).upright)
 
+    @cached_property
+    def _fixed_guides(self) -> dict[str, Guide]:
+        """The hinge or rail on a fixed body of each mobile object that moves on one throughout."""
+        objects = self.bodies.objects
+        fixed = [objects[e.name] for e in self.capture.objects if e.tag is TagType.FIXED]
+        found = {
+            each.name: guide_of(objects[each.name], fixed, self._own_floor(each.name), self.limits)
+            for each in self.capture.objects
+            if each.tag is TagType.MOBILE and not each.part_of
+        }
+        return {name: guide for name, guide in found.items() if guide is not None}
+
+    @cached_property
+    def parts(self) -> dict[str, Part]:
+        """The parts of things by name: those that are stated, or that a whole recording shows."""
+        movable = set(self.mobile) - set(self.acting) - set(self._fixed_guides)
+        objects = self.bodies.objects
+        return parts(self.capture, objects, movable if self.whole else (), self.limits)
+
+    @cached_property
+    def guides(self) -> dict[str, Guide]:
+        """The hinge or rail of each mobile object that moves on one throughout."""
+        found = {name: part.guide for name, part in self.parts.items()}
+        return self._fixed_guides | {name: guide for name, guide in found.items() if guide}
+
+    @cached_property
+    def wholes(self) -> dict[str, str]:
+        """The base of each part of a thing whose base can be moved."""
+        bases = {name: part.base.name for name, part in self.parts.items()}
+        return {name: base for name, base in bases.items() if base in self.mobile}
+
     def floor(self, name: str) -> Floor:
         """The floor of motion of an object."""
+        if name in self.parts:
+            return self.parts[name].floor
+        return self._own_floor(name)
+
+    def _own_floor(self, name: str) -> Floor:
         known = self.calibration.tag_object(name)
         return Floor(known.motion_floor_m, known.motion_floor_rad)
 
+    def moved_poses(self, name: str) -> Poses:
+        """The poses by which an object moves: a part of a thing, in the axes of its base."""
+        parts = self.parts
+        return parts[name].body.poses if name in parts else self.bodies.objects[name].poses
+
     def rests(self, name: str) -> tuple[RestPose, ...]:
         """The places where an object rests."""
-        return rest_poses(self.bodies.objects[name].poses, self.floor(name), self.limits)
+        return rest_poses(self.moved_poses(name), self.floor(name), self.limits)
 
     def spans(self, holds: Holds, one: BodyGeometry) -> list[Interval]:
         """The intervals in which something holds of a body, as those of contacts are made."""
@@ -196,6 +242,8 @@ class _Trial:
             bodies: tuple[Sensor | TagObject, ...] = (*capture.acting, *seeing(capture), *own)
             for body in bodies:
                 yield OfAgent(body.name, capture.agent_of(body))
+        for name, base in sorted(self.wholes.items()):
+            yield PartOf(name, base)
         if capture.force_transfer:
             yield ForceTransfer()
         for rank, end in enumerate(capture.purposes):
@@ -210,14 +258,71 @@ class _Trial:
             if {touch.first, touch.second} <= movable:
                 orders.append((touch.second, touch.first))
             for first, second in orders:
-                yield Touching(first, second, *touch.interval)
-                yield Gap(first, second, touch.interval[0], round(1e6 * touch.gap_m))
+                if first not in self.wholes:
+                    yield Touching(first, second, *touch.interval)
+                    yield Gap(first, second, touch.interval[0], round(1e6 * touch.gap_m))
+        for name, base in self.wholes.items():
+            # A hinge holds both together throughout, wherever their meshes meet.
+            yield Touching(name, base, 0, len(self.capture.times) - 1)
+            yield Gap(name, base, 0, 0)
+
+    def of_things(self, touches: Sequence[Contact], moves: Iterable[Fact]) -> Iterator[Contact]:
+        """Contacts, of which those with a part are with the whole thing too (spec 11).
+
+        Part and base do not meet each other. Who has hold of both has hold of the thing alone,
+        unless the part moves in the base meanwhile and nobody takes it off the base.
+        """
+        whole, count = self.wholes, len(self.capture.times)
+        moved = [(fact.object, fact.ends()) for fact in moves if isinstance(fact, Displaced)]
+        pairs: dict[tuple[str, str], list[Contact]] = defaultdict(list)
+        for touch in touches:
+            first, second = (whole.get(name, name) for name in (touch.first, touch.second))
+            if first != second:
+                pairs[first, second].append(touch)
+
+        def of_base(hand: str, base: str) -> list[Interval]:
+            return [each.interval for each in pairs.get((hand, base), ()) if each.second == base]
+
+        def stays(hand: str, base: str, span: tuple[int, ...]) -> bool:
+            return any(low <= span[0] and span[1] <= high for low, high in of_base(hand, base))
+
+        def steadies(touch: Contact, span: Interval) -> bool:
+            hand, part, base = touch.first, touch.second, whole[touch.second]
+            worked = [ends for name, ends in moved if name == part and _meet(ends, span)]
+            if hand not in self.acting or not any(
+                _meet(each, span) for each in of_base(hand, base)
+            ):
+                return False
+            return all(
+                stays(hand, base, ends)
+                and any(
+                    each.second == part and _meet(each.interval, ends) and other != hand
+                    for other in self.acting
+                    for each in pairs.get((other, base), ())
+                    if not stays(other, base, ends)
+                )
+                for ends in worked
+            )
+
+        for (first, second), found in list(pairs.items()):
+            own = [each for each in found if (each.first, each.second) == (first, second)]
+            if own == found:
+                yield from own
+                continue
+            for span in geometry.runs(mask([each.interval for each in found], count)):
+                begins = min(found, key=lambda each: (each.interval[0] - span[0]) % count)
+                gap_m = begins.gap_m + BESIDE_M * (begins not in own)
+                yield Contact(first, second, span, gap_m, begins.lingers)
+                for each in found:
+                    part = each not in own and _meet(each.interval, span)
+                    if part and not (each.second in whole and steadies(each, span)):
+                        yield each
 
     def motions(self, touches: Iterable[Contact]) -> Iterator[Fact]:
         """When each object moves, by its floor, and when that truly began and ended."""
         for name in self.mobile:
             poses, rests, floor = (
-                self.bodies.objects[name].poses,
+                self.moved_poses(name),
                 self.rests(name),
                 self.floor(name),
             )
@@ -240,17 +345,7 @@ class _Trial:
         found = (self.bodies.named(other).poses for other in sorted(others))
         return [poses for poses in found if not poses.rests and poses is not own]
 
-    def guides(self) -> dict[str, Guide]:
-        """The hinge or rail of each mobile object that moves on one throughout."""
-        objects = self.bodies.objects
-        fixed = [objects[e.name] for e in self.capture.objects if e.tag is TagType.FIXED]
-        found = {
-            name: guide_of(objects[name], fixed, self.floor(name), self.limits)
-            for name in self.mobile
-        }
-        return {name: guide for name, guide in found.items() if guide is not None}
-
-    def handling(self, known: Sequence[Fact], guides: Mapping[str, Guide]) -> Iterator[Fact]:
+    def handling(self, known: Sequence[Fact]) -> Iterator[Fact]:
         """Rest, turning points, leaning, falls, arrangements and places of handled bodies.
 
         Handled are the acting end-effectors and every mobile object that one of them touches.
@@ -263,14 +358,14 @@ class _Trial:
         for name, hand in self.acting.items():
             out += (Resting(name, *rest) for rest in resting(hand.poses, limits))
         for name in mobile:
-            out += self._course(things[name], known, guides.get(name))
+            out += self._course(things[name], known, self.guides.get(name))
         out += seated(things, self.acting, touches, known, limits)
         out += bearing(self.capture, self.bodies, touches, self.calibration, limits)
         last = len(self.capture.times) - 1
         borders = boundary_frames([*known, *out], self.acting, last)
         others = (things[name] for name in mobile if name not in self.acting)
         for one in (*self.acting.values(), *others):
-            out += self._placed(one, tuple(borders.get(one.name, ())), touches, guides)
+            out += self._placed(one, tuple(borders.get(one.name, ())), touches)
         for touch in touches:
             if touch.body in self.acting and touch.other in mobile and touch.body != touch.other:
                 hand, thing = self.acting[touch.body], things[touch.other]
@@ -300,7 +395,7 @@ class _Trial:
             turns = turns_of_height(found, one.middles, met, limits)
         else:
             turns = turns_on_guide(guide, displaced, limits)
-            yield Guided(name, guide.fit.kind, guide.base)
+            yield Guided(name, guide.kind, guide.base)
         swinging = swings(one.poses, moves, limits)
         length_m = float(one.shape.size.max()) if one.shape else 0.0
         leans = leaning(one.poses, self.upright(name), limits, length_m=length_m)
@@ -317,7 +412,6 @@ class _Trial:
         one: BodyGeometry,
         frames: tuple[int, ...],
         touches: list[Touching],
-        guides: Mapping[str, Guide],
     ) -> Iterator[Fact]:
         """Where a body is at some frames, and how it is arranged to each object."""
         things = self.bodies.objects
@@ -326,21 +420,27 @@ class _Trial:
         if trunk:
             upright = self.upright(trunk)
             yield from trunk_places(one, self.bodies.sensors[trunk], upright, frames)
-        if one.name in guides:
-            opening = guides[one.name].opening
+        if one.name in self.guides:
+            opening = self.guides[one.name].opening
             for frame in frames:
                 if not np.isnan(opening[frame]):
                     yield Opening(one.name, frame, round(1000.0 * float(opening[frame])))
         for other in things.values():
             if other.name != one.name:
                 yield from distances(one, other, frames, self.since, whole=self.whole)
-                yield from self._arranged(one, other, touches)
+                if not self._one_thing(one.name, other.name):
+                    yield from self._arranged(one, other, touches)
         others = sorted(
-            (each for each in things.values() if each is not one), key=attrgetter("name")
+            (each for each in things.values() if not self._one_thing(one.name, each.name)),
+            key=attrgetter("name"),
         )
         for first, second in combinations(others, 2):
             for span in self.spans(between(one, first, second), one):
                 yield Between(one.name, first.name, second.name, *span)
+
+    def _one_thing(self, name: str, other: str) -> bool:
+        """Whether two names are of one body, or of bodies of one thing that can be moved."""
+        return self.wholes.get(name, name) == self.wholes.get(other, other)
 
     def _arranged(
         self, one: BodyGeometry, other: BodyGeometry, touches: list[Touching]
@@ -611,6 +711,7 @@ def measured(
     for body in capture.sensors:
         if body.role is not Role.ACTS:
             bodies.sensors[body.name].poses.forget()
+    touches = tuple(trial.of_things(touches, moves))
     facts = [*trial.scene(), *trial.contacts(touches), *moves]
     for name, track in tracks.items():
         facts += (ZeroCrossing(name, int(frame)) for frame in track.crossings)
@@ -618,8 +719,7 @@ def measured(
     for sensor, look in looks.items():
         facts += (LookingAt(sensor, name, *interval) for name, interval in look.looks)
     facts += company(capture, bodies, calibration, limits)
-    guides = trial.guides()
-    facts += list(trial.handling(tuple(facts), guides))
+    facts += list(trial.handling(tuple(facts)))
     own = [notice for notice in capture.notices if notice.code != LOSS]
     if notices:
         own += notices_of(capture, calibration, limits)
@@ -631,7 +731,7 @@ def measured(
         tracks,
         looks,
         bodies.without_caches(),
-        guides,
+        trial.guides,
         {(each.first, each.second): each.interval[1] for each in near if each.lingers},
         dict(trial.arriving()),
     )
@@ -649,6 +749,11 @@ def _track(poses: Poses, highest_mps: float, thresholds: Thresholds) -> Track:
     )
     reach = horizon_frames(stream.times, thresholds)
     return Track(poses, crossings, pauses(pace, crossings, reach))
+
+
+def _meet(one: tuple[int, ...], other: tuple[int, ...]) -> bool:
+    """Whether two closed intervals share a frame."""
+    return one[0] <= other[1] and other[0] <= one[1]
 
 
 def _motions(moves: Iterable[Fact]) -> dict[str, list[Interval]]:

@@ -162,4 +162,8 @@ class Thresholds:
     flush_m: float = 0.03  # a closed lid or door is so near to what it closes
     closed_share: float = 0.75  # share of a closed lid, door or drawer that is flush or inside
     withdrawn_share: float = 0.05  # an open one is less inside by this share
+    part_stray_m: float = 0.003  # most stray of a part on its hinge or rail (spec 11)
+    part_stray_rad: float = 0.0524  # ... and of its orientation: three degrees
+    outer_share: float = 0.5  # the outer half of a part, seen from its hinge, tells if it is closed
+    closed_gap_share: float = 0.1  # ... by its gap over its length: six degrees
     rail_play_m: float = 0.03  # what guides a drawer is so near on both sides of it

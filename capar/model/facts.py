@@ -507,16 +507,30 @@ class Phase(Observed):
 
 @fact_kind("guided", "GuidedObject body guideKind other")
 class Guided(Observed):
-    """An object moves on one ``hinge`` or ``rail`` of a fixed base throughout the recording."""
+    """An object moves on one hinge or rail of a base throughout the recording.
+
+    Where its closed place is not known it is called a ``pivot`` or a ``track``.
+    """
 
     object: str
     kind: str
     base: str
 
 
+@fact_kind("belongs_to", "PartOf body other")
+class PartOf(Observed):
+    """An object is a part of a thing that can be moved, of which the other body is the base."""
+
+    object: str
+    base: str
+
+
 @fact_kind("opening", "Openings body samples")
 class Opening(Observed):
-    """How far an object on a guide is from its closed place [mm on a rail, mrad on a hinge]."""
+    """How far an object on a guide is from its closed place [mm on a rail, mrad on a hinge].
+
+    Where none is known, from one end of its range.
+    """
 
     object: str
     frame: int

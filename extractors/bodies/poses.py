@@ -125,6 +125,52 @@ def poses_of(
     return Poses(body.name, filled, smooth, settled, noise, still, fixed)
 
 
+def poses_in(poses: Poses, base: Poses, thresholds: Thresholds) -> Poses:
+    """Poses in the axes of another body, which stands where it was first known.
+
+    Lost where either is. The noise of the other's place and turning adds to its own.
+    """
+    filled = _stream_in(poses.filled, base.filled)
+    apart = np.linalg.norm(poses.filled.positions - base.filled.positions, axis=1)
+    lever_m = 0.0 if np.isnan(apart).all() else float(np.nanmean(apart))
+    one, two = poses.noise, base.noise
+    swing_m = lever_m * two.orientation_rad
+    noise = Noise(
+        float(np.linalg.norm([one.position_m, two.position_m, swing_m])),
+        float(np.hypot(one.orientation_rad, two.orientation_rad)),
+    )
+    smooth = filled if filled.lost.all() else LowPassed(filled, thresholds)
+    longer = None
+    if poses.longer is not None and base.longer is not None:
+        longer = _stream_in(poses.longer, base.longer)
+    return Poses(poses.name, filled, smooth, smooth, noise, still=False, longer=longer)
+
+
+def _stream_in(stream: Stream, base: Stream) -> Stream:
+    """A stream in the axes of another one, which stands where it was first known."""
+    if base.lost.all():
+        return base
+    first = int(np.argmin(base.lost))
+    there, turn = base.positions[first], base.orientations[first : first + 1]
+    change = geometry.products(turn, base.orientations * [1.0, -1.0, -1.0, -1.0])
+    offset = stream.positions - base.positions
+    places = there + np.einsum("fij,fj->fi", rotation_matrices(change), offset)
+    turns = geometry.products(change, stream.orientations)
+    return Stream(stream.times, places, turns)
+
+
+def standing(poses: Poses) -> Poses:
+    """Poses of a body that stays where it was first known."""
+    filled = poses.filled
+    first = 0 if filled.lost.all() else int(np.argmin(filled.lost))
+    x, y, z = map(float, filled.positions[first])
+    w, i, j, k = map(float, filled.orientations[first])
+    if filled.lost.all():
+        return poses
+    held = _held(filled, FixedPose((x, y, z), (w, i, j, k)))
+    return Poses(poses.name, held, held, held, Noise(0.0, 0.0), still=True)
+
+
 def median_pose(stream: Stream, frames: slice) -> tuple[Vector, Quaternion]:
     """The middle of the known poses of some frames in a row: median place [m], mean orientation.
 

@@ -1,6 +1,6 @@
 """Hinges and rails that guide an object: found, fitted and placed."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 
@@ -9,12 +9,14 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
+from capar.model.capture import Capture, TagObject
 from capar.model.geometry import Holds, Series, Vector
 from capar.model.locations import GuideLocation, Nlt, local_point, normalised, relative_orientation
 from extractors.bodies.bodies import BodyGeometry
+from extractors.bodies.poses import poses_in, standing
 from extractors.contact.surfaces import surface
-from extractors.motion.object_motion import Floor
-from extractors.signals.intervals import Interval
+from extractors.motion.object_motion import Floor, motion_floor
+from extractors.signals.intervals import Interval, frame_rate
 from extractors.thresholds import Thresholds
 
 HINGE, RAIL = "hinge", "rail"
@@ -162,7 +164,7 @@ class Guide:
 
     fit: GuideFit
     base: str
-    """The fixed body that bears the guide."""
+    """The body that bears the guide."""
 
     closed: int
     """The frame in which the body is nearest to the closed end of its range."""
@@ -173,13 +175,43 @@ class Guide:
     still: float
     """What is no farther than this from an end of its range is there [rad] or [m]."""
 
+    known: bool = True
+    """Whether that end is where it is closed, and not merely one end of its range."""
+
+    stated: float | None = None
+    """The course at which it is closed, as the capture states it [rad] or [m]."""
+
+    @property
+    def kind(self) -> str:
+        """``hinge`` or ``rail``; ``pivot`` or ``track`` where no closed place is known."""
+        return self.fit.kind if self.known else {HINGE: "pivot", RAIL: "track"}[self.fit.kind]
+
     @property
     def opening(self) -> Series:
         """How far the body is open at each frame [rad] or [m]; NaN where it was lost."""
         course = self.fit.course
+        if self.stated is not None:
+            return np.asarray(np.abs(course - self.stated))
         with np.errstate(invalid="ignore"):
             there = np.abs(course - course[self.closed]) <= self.still
         return np.asarray(np.abs(course - np.median(course[there])))
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A part of a thing whose base can be moved, too."""
+
+    base: BodyGeometry
+    """The base, in the axes in which it stands where it was first known."""
+
+    body: BodyGeometry
+    """The part, in the same axes."""
+
+    floor: Floor
+    """Of the part's motion in its base."""
+
+    guide: Guide | None
+    """None if it was not seen to move on a hinge or a rail."""
 
 
 def guide_of(
@@ -206,6 +238,157 @@ def guide_of(
             closed, opened = ends if first else ends[::-1]
             best = Guide(fit, base.name, closed, opened, still)
     return best
+
+
+def parts(
+    capture: Capture,
+    objects: Mapping[str, BodyGeometry],
+    free: Collection[str],
+    thresholds: Thresholds,
+) -> dict[str, Part]:
+    """The parts of things, by name (spec 11).
+
+    What a capture states is one; else what moves on a hinge or a rail of a larger mobile body.
+    ``free``: the objects that may be parts, or their bases, without being stated.
+    """
+    found: dict[str, Part] = {}
+    for one in capture.objects:
+        for other in capture.objects:
+            stated = one.part_of == other.name
+            larger = (_volume(one), other.name) < (_volume(other), one.name)
+            may = not one.part_of and {one.name, other.name} <= set(free) and larger
+            if not stated and not may:
+                continue
+            if not stated and not _stays_near(objects[one.name], objects[other.name], thresholds):
+                continue
+            part = _part(one, objects[one.name], objects[other.name], thresholds, stated=stated)
+            best = found.get(one.name)
+            if stated or (part.guide and (best is None or _residual(part) < _residual(best))):
+                found[one.name] = part
+    return found
+
+
+def _residual(part: Part) -> float:
+    return part.guide.fit.residual_m if part.guide else np.inf
+
+
+def _volume(each: TagObject) -> float:
+    """The volume of a body's convex hull [m3]."""
+    return 0.0 if each.shape is None else float(surface(each.shape).mesh.convex_hull.volume)
+
+
+def _stays_near(one: BodyGeometry, other: BodyGeometry, thresholds: Thresholds) -> bool:
+    """Whether the boxes of two bodies are never farther apart than a hinge's leaf."""
+    (low, high), (below, above) = one.boxes, other.boxes
+    gaps = np.linalg.norm(np.maximum(np.maximum(low - above, below - high), 0.0), axis=1)
+    with np.errstate(invalid="ignore"):
+        return not (gaps > thresholds.hinge_near_m).any() and not one.poses.rests
+
+
+def _part(
+    one: TagObject, body: BodyGeometry, other: BodyGeometry, thresholds: Thresholds, *, stated: bool
+) -> Part:
+    moved = BodyGeometry(one.name, body.shape, poses_in(body.poses, other.poses, thresholds))
+    base = BodyGeometry(other.name, other.shape, standing(other.poses))
+    rate_hz = frame_rate(moved.poses.filled.times)
+    noise = moved.poses.noise
+    floor = motion_floor(noise, rate_hz, own_m=one.motion_floor_m, thresholds=thresholds)
+    fit = None if body.shape is None else _fit(moved, floor, thresholds)
+    if fit is None or not (stated or _steady(fit, thresholds)):
+        return Part(base, moved, floor, None)
+    still = floor.rotation_rad if fit.kind == HINGE else floor.position_m
+    ends = int(np.nanargmin(fit.course)), int(np.nanargmax(fit.course))
+    at = _stated_course(one, fit, moved, base)
+    if at is not None:
+        nearest, farthest = (
+            np.nanargmin(np.abs(fit.course - at)),
+            np.nanargmax(np.abs(fit.course - at)),
+        )
+        guide = Guide(fit, base.name, int(nearest), int(farthest), still, stated=at)
+        return Part(base, moved, floor, guide)
+    closed = _closed(moved, base, fit, ends, thresholds) if base.planes is not None else None
+    if closed is None and not stated and not _joined(moved, other, base, fit, ends, thresholds):
+        return Part(base, moved, floor, None)
+    first, known = (closed[0], True) if closed else _meets(moved, base, fit, ends, thresholds)
+    near, far = ends if first else ends[::-1]
+    return Part(base, moved, floor, Guide(fit, base.name, near, far, still, known))
+
+
+def _steady(fit: GuideFit, thresholds: Thresholds) -> bool:
+    """Whether what is left of a fit is as little as of a true hinge or rail (spec 11)."""
+    stray_m = float(np.sqrt(np.nanmean(fit.stray_m**2)))
+    stray_rad = float(np.sqrt(np.nanmean(fit.stray_rad**2)))
+    return stray_m <= thresholds.part_stray_m and stray_rad <= thresholds.part_stray_rad
+
+
+def _stated_course(
+    one: TagObject, fit: GuideFit, body: BodyGeometry, base: BodyGeometry
+) -> float | None:
+    """The course at which the capture says that a part is closed [rad] or [m]."""
+    known = int(np.flatnonzero(~np.isnan(fit.course))[0])
+    axis = fit.axis @ base.turn(known)
+    sign = 1.0 if axis[np.argmax(np.abs(axis))] > 0.0 else -1.0
+    if fit.kind == HINGE and one.closed_deg is not None:
+        turned = base.turn(known).T @ body.turn(known)
+        w, *vector = geometry.quaternions(Rotation.from_matrix(turned))
+        angle = 2.0 * np.arctan2(np.dot(vector, sign * axis), w)
+        rest = np.radians(one.closed_deg) - angle
+        return float(
+            fit.course[known] + sign * (rest - 2.0 * np.pi * np.round(rest / (2.0 * np.pi)))
+        )
+    if fit.kind == RAIL and one.closed_m is not None:
+        apart = body.poses.smooth.positions[known] - base.poses.smooth.positions[known]
+        return float(fit.course[known] + sign * (one.closed_m - sign * float(apart @ fit.axis)))
+    return None
+
+
+def _joined(
+    body: BodyGeometry,
+    other: BodyGeometry,
+    base: BodyGeometry,
+    fit: GuideFit,
+    ends: tuple[int, int],
+    thresholds: Thresholds,
+) -> bool:
+    """Whether bodies hold together on a hinge, and none merely lies, turns or tips on the other.
+
+    What turns about a line through its middle may stand on the other, unless that line lies or the
+    other was leant; what turns about its own edge, and comes to lie on the other, may be tipped.
+    """
+    if fit.kind != HINGE or base.planes is None or body.planes is None:
+        return False
+    line = _hinge_line(body, fit, ends[0])
+    if max(_outside(line, each, ends[0]).min() for each in (body, base)) > thresholds.hinge_near_m:
+        return False
+    if _at_own_edge(body, fit, ends[0], thresholds):
+        shares = [
+            _closed_share(body, base, fit, end, outward, thresholds)
+            for end, outward in zip(ends, (-1.0, 1.0), strict=True)
+        ]
+        return max(shares) < thresholds.closed_share
+    first = int(np.argmin(other.poses.lost))
+    up = other.turns_at(slice(None)) @ other.turn(first).T @ UP
+    leans = bool((up[:, 2] < np.cos(thresholds.lean_rad)).any())
+    return leans or abs(float(fit.axis @ UP)) < thresholds.steep
+
+
+def _meets(
+    body: BodyGeometry,
+    base: BodyGeometry,
+    fit: GuideFit,
+    ends: tuple[int, int],
+    thresholds: Thresholds,
+) -> tuple[bool, bool]:
+    """Whether a part is nearer to its base at the first end, and whether it is closed there."""
+    if base.planes is None or fit.kind == RAIL:
+        return True, False
+    gaps = []
+    for end in ends:
+        points = _points(body, end)
+        levers = np.linalg.norm(np.cross(points - fit.point, fit.axis), axis=1)
+        outer = points[levers >= thresholds.outer_share * levers.max()]
+        gaps.append(float(np.maximum(_outside(outer, base, end), 0.0).min()) / levers.max())
+    return gaps[0] <= gaps[1], min(gaps) <= thresholds.closed_gap_share < max(gaps)
 
 
 def _fit(body: BodyGeometry, floor: Floor, thresholds: Thresholds) -> GuideFit | None:
