@@ -67,9 +67,6 @@ class GuideFit:
     lever_m: float
     """Distance of the body's outermost point from its middle [m]."""
 
-    radius_m: float
-    """Distance of its middle from the line [m]."""
-
     @property
     def residual_m(self) -> float:
         """Root mean square of what is left [m]: stray of the middle, and of the rim by turning."""
@@ -108,7 +105,7 @@ def fit_hinge(body: BodyGeometry) -> GuideFit | None:
     stray_m = np.hypot(np.abs(places - terms @ [centre, arm]), heights - height)
     point = centre.real * one + centre.imag * other + height * axis
     measured = angles, stray_m, geometry.angle_between(back, base)
-    return _fitted(HINGE, body, known, axis, point, measured, float(np.abs(arm)))
+    return _fitted(HINGE, body, known, axis, point, measured)
 
 
 def fit_rail(body: BodyGeometry) -> GuideFit | None:
@@ -123,7 +120,7 @@ def fit_rail(body: BodyGeometry) -> GuideFit | None:
     stray_m = np.linalg.norm(middles - mean - course[:, None] * axis, axis=1)
     usual = geometry.quaternions(geometry.rotations(turns).mean())
     measured = course, stray_m, geometry.angle_between(turns, usual[None])
-    return _fitted(RAIL, body, known, axis, mean, measured, 0.0)
+    return _fitted(RAIL, body, known, axis, mean, measured)
 
 
 def _known(body: BodyGeometry) -> Holds:
@@ -148,14 +145,13 @@ def _fitted(
     axis: Vector,
     point: Vector,
     measured: tuple[Float[np.ndarray, "known"], ...],
-    radius_m: float,
 ) -> GuideFit:
     """A fit by what was measured in the frames in which the body is known."""
     columns = np.full((len(measured), len(known)), np.nan)
     columns[:, known] = measured
     course, stray_m, stray_rad = columns
     lever_m = float(np.linalg.norm(body.corners, axis=1).max())
-    return GuideFit(kind, axis, point, course, stray_m, stray_rad, lever_m, radius_m)
+    return GuideFit(kind, axis, point, course, stray_m, stray_rad, lever_m)
 
 
 @dataclass(frozen=True, eq=False)
@@ -307,7 +303,7 @@ def _part(
         guide = Guide(fit, base.name, int(nearest), int(farthest), still, stated=at)
         return Part(base, moved, floor, guide)
     closed = _closed(moved, base, fit, ends, thresholds) if base.planes is not None else None
-    if closed is None and not stated and not _joined(moved, other, base, fit, ends, thresholds):
+    if closed is None and not stated and not _joined(moved, base, fit, ends, thresholds):
         return Part(base, moved, floor, None)
     first, known = (closed[0], True) if closed else _meets(moved, base, fit, ends, thresholds)
     near, far = ends if first else ends[::-1]
@@ -344,7 +340,6 @@ def _stated_course(
 
 def _joined(
     body: BodyGeometry,
-    other: BodyGeometry,
     base: BodyGeometry,
     fit: GuideFit,
     ends: tuple[int, int],
@@ -352,8 +347,7 @@ def _joined(
 ) -> bool:
     """Whether bodies hold together on a hinge, and none merely lies, turns or tips on the other.
 
-    What turns about a line through its middle may stand on the other, unless that line lies or the
-    other was leant; what turns about its own edge, and comes to lie on the other, may be tipped.
+    What turns about its own edge, and comes to lie on the other, may be tipped.
     """
     if fit.kind != HINGE or base.planes is None or body.planes is None:
         return False
@@ -366,10 +360,7 @@ def _joined(
             for end, outward in zip(ends, (-1.0, 1.0), strict=True)
         ]
         return max(shares) < thresholds.closed_share
-    first = int(np.argmin(other.poses.lost))
-    up = other.turns_at(slice(None)) @ other.turn(first).T @ UP
-    leans = bool((up[:, 2] < np.cos(thresholds.lean_rad)).any())
-    return leans or abs(float(fit.axis @ UP)) < thresholds.steep
+    return True
 
 
 def _meets(
@@ -387,7 +378,7 @@ def _meets(
         points = _points(body, end)
         levers = np.linalg.norm(np.cross(points - fit.point, fit.axis), axis=1)
         outer = points[levers >= thresholds.outer_share * levers.max()]
-        gaps.append(float(np.maximum(_outside(outer, base, end), 0.0).min()) / levers.max())
+        gaps.append(float(np.median(np.maximum(_outside(outer, base, end), 0.0))) / levers.max())
     return gaps[0] <= gaps[1], min(gaps) <= thresholds.closed_gap_share < max(gaps)
 
 
@@ -675,16 +666,14 @@ def turns_on_guide(
     It lies in the middle of the frames in which the body is within the floor of motion of the
     place farthest along.
     """
-    fit = guide.fit
-    # How far the body's middle is from its closed place along its path [m].
-    opening = guide.opening * (fit.radius_m if fit.kind == HINGE else 1.0)
+    opening = guide.opening
     found: list[int] = []
     for first, last in motions:
         way = opening[first : last + 1]
         known = np.flatnonzero(~np.isnan(way))
-        for turn in known[_extrema(way[known], thresholds.reversal_m)]:
+        for turn in known[_extrema(way[known], thresholds.guide_floors * guide.still)]:
             with np.errstate(invalid="ignore"):
-                there = np.abs(way - way[turn]) <= thresholds.motion_floor_m
+                there = np.abs(way - way[turn]) <= guide.still
             begin, end = next(run for run in geometry.runs(there) if run[0] <= turn <= run[1])
             found.append(first + (begin + end) // 2)
     return tuple(found)
