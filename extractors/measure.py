@@ -105,8 +105,9 @@ from extractors.thresholds import Thresholds
 PASSED = ("inside", "above")
 """Arrangements that a body may pass through."""
 
-SHIFTS, NEAR = "shifts", "near"
-"""An end-effector goes to another place on what it touches; it is within reach, without touch."""
+SHIFTS, NEAR, BY_PART = "shifts", "near", "by_part"
+"""An end-effector goes to another place on what it touches; it is within reach, without touch; it
+touches a thing by a part alone."""
 
 BESIDE_M = 1e-6
 """A thing that is touched by its part is so much farther than the part [m]: the part is named."""
@@ -261,6 +262,8 @@ class _Trial:
                 if first not in self.wholes:
                     yield Touching(first, second, *touch.interval)
                     yield Gap(first, second, touch.interval[0], round(1e6 * touch.gap_m))
+            if touch.by_part:
+                yield Lies(touch.first, BY_PART, touch.second, *touch.interval)
         for name, base in self.wholes.items():
             # A hinge holds both together throughout, wherever their meshes meet.
             yield Touching(name, base, 0, len(self.capture.times) - 1)
@@ -286,22 +289,12 @@ class _Trial:
         def stays(hand: str, base: str, span: tuple[int, ...]) -> bool:
             return any(low <= span[0] and span[1] <= high for low, high in of_base(hand, base))
 
-        def steadies(touch: Contact, span: Interval) -> bool:
-            hand, part, base = touch.first, touch.second, whole[touch.second]
-            worked = [ends for name, ends in moved if name == part and _meet(ends, span)]
-            if hand not in self.acting or not any(
-                _meet(each, span) for each in of_base(hand, base)
-            ):
-                return False
-            return all(
-                stays(hand, base, ends)
-                and any(
-                    each.second == part and _meet(each.interval, ends) and other != hand
-                    for other in self.acting
-                    for each in pairs.get((other, base), ())
-                    if not stays(other, base, ends)
-                )
-                for ends in worked
+        def taken_off(touch: Contact, ends: tuple[int, ...]) -> bool:
+            return any(
+                each.second == touch.second and _meet(each.interval, ends)
+                for hand in self.acting
+                for each in pairs.get((hand, whole[touch.second]), ())
+                if hand != touch.first and not stays(hand, whole[touch.second], ends)
             )
 
         for (first, second), found in list(pairs.items()):
@@ -312,10 +305,17 @@ class _Trial:
             for span in geometry.runs(mask([each.interval for each in found], count)):
                 begins = min(found, key=lambda each: (each.interval[0] - span[0]) % count)
                 gap_m = begins.gap_m + BESIDE_M * (begins not in own)
-                yield Contact(first, second, span, gap_m, begins.lingers)
+                part = {name for each in found for name in (each.first, each.second)} & set(whole)
+                worked = [ends for name, ends in moved if name in part and _meet(ends, span)]
+                has_both = any(_meet(each, span) for each in of_base(first, second)) and all(
+                    stays(first, second, ends) for ends in worked
+                )
+                yield Contact(first, second, span, gap_m, begins.lingers, not has_both)
                 for each in found:
-                    part = each not in own and _meet(each.interval, span)
-                    if part and not (each.second in whole and steadies(each, span)):
+                    if each in own or not _meet(each.interval, span):
+                        continue
+                    steadies = has_both and first in self.acting
+                    if not (steadies and all(taken_off(each, ends) for ends in worked)):
                         yield each
 
     def motions(self, touches: Iterable[Contact]) -> Iterator[Fact]:

@@ -292,6 +292,9 @@ class Contact:
     """Whether they have stayed near each other since, up to the last frame: if they touch again
     before they part, the contact lasts."""
 
+    by_part: bool = False
+    """Whether the first touches the second, the base of a thing, by a part of it alone."""
+
 
 def contact_tolerance(capture: Capture, bodies: Bodies, thresholds: Thresholds) -> float:
     """Distance up to which bodies count as touching [m].
