@@ -105,10 +105,11 @@ def given_in_audit() -> frozenset[Signature]:
     return heads_of([*_own("space.lp"), *_own("scene.lp"), *_own("words.lp")]) | {
         ("force_transfer", 0),
         ("gap", 4),
+        ("aside", 2),
     }
 
 
-EMPTY: frozenset[Signature] = frozenset((("gap", 4), ("together", 4)))
+EMPTY: frozenset[Signature] = frozenset((("gap", 4), ("aside", 2), ("together", 4)))
 """Predicates that hold of nothing in any world, though they may of a segment."""
 
 MEASURED: frozenset[Signature] = frozenset(
