@@ -57,6 +57,7 @@ from capar.model.facts import (
     ZeroCrossing,
 )
 from capar.model.geometry import Places, Series, Vector
+from capar.model.locations import GuideLocation
 from capar.model.notices import Notice, Value, notice
 from extractors.bodies.bodies import Bodies, BodyGeometry, bodies_of, trunk_sensor
 from extractors.bodies.poses import Poses
@@ -87,7 +88,15 @@ from extractors.relations.arrangement import (
     sides,
 )
 from extractors.relations.attention import Attention, attention, seeing, sight
-from extractors.relations.guides import Guide, Part, guide_of, parts, turns_on_guide
+from extractors.relations.guides import (
+    HINGE,
+    Guide,
+    Part,
+    guide_location,
+    guide_of,
+    parts,
+    turns_on_guide,
+)
 from extractors.relations.places import (
     FROM_THE_BEGINNING,
     Sums,
@@ -200,6 +209,34 @@ class _Trial:
         """The base of each part of a thing whose base can be moved."""
         bases = {name: part.base.name for name, part in self.parts.items()}
         return {name: base for name, base in bases.items() if base in self.mobile}
+
+    def _on_guides(self) -> Iterator[tuple[Guide, BodyGeometry, BodyGeometry]]:
+        """Each guide, what moves on it, and its base, in the axes in which it was fitted."""
+        for name, guide in sorted(self.guides.items()):
+            part = self.parts.get(name)
+            things = self.bodies.objects
+            yield guide, *((part.body, part.base) if part else (things[name], things[guide.base]))
+
+    def guide_locations(self) -> Iterator[GuideLocation]:
+        """Where on objects and their bases hinges and rails are."""
+        for guide, body, base in self._on_guides():
+            yield guide_location(body, base, guide)
+
+    def guide_notices(self) -> Iterator[Notice]:
+        """What hinges and rails were found."""
+        for guide, body, base in self._on_guides():
+            axis = guide.fit.axis @ base.turn(guide.closed)
+            opened = float(np.nanmax(guide.opening))
+            turns = guide.fit.kind == HINGE
+            yield notice(
+                "guide",
+                body.name,
+                base.name,
+                kind=guide.kind,
+                axis=", ".join(f"{round(float(part), 2) + 0.0:.2f}" for part in axis),
+                residual_m=guide.fit.residual_m,
+                **({"opened_deg": math.degrees(opened)} if turns else {"opened_m": opened}),
+            )
 
     def floor(self, name: str) -> Floor:
         """The floor of motion of an object."""
@@ -649,7 +686,7 @@ class Measurements:
     """By sensor that attends, and by head that acts."""
 
     bodies: Bodies
-    guides: Mapping[str, Guide]
+    guides: tuple[GuideLocation, ...]
     """The hinge or rail of each object that moves on one, by object."""
 
     lingering: Mapping[tuple[str, str], int] = field(default_factory=dict)
@@ -723,6 +760,7 @@ def measured(
     own = [notice for notice in capture.notices if notice.code != LOSS]
     if notices:
         own += notices_of(capture, calibration, limits)
+        own += trial.guide_notices()
         own += faults(capture, bodies, touches, _motions(moves), limits)
     return Measurements(
         _ordered(facts),
@@ -731,7 +769,7 @@ def measured(
         tracks,
         looks,
         bodies.without_caches(),
-        trial.guides,
+        tuple(trial.guide_locations()),
         {(each.first, each.second): each.interval[1] for each in near if each.lingers},
         dict(trial.arriving()),
     )

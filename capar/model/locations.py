@@ -98,7 +98,7 @@ class GuideLocation:
     """
 
     object: str  #: The door, lid or drawer
-    base: str  #: The fixed object that bears the hinge or the rail
+    base: str  #: The object that bears the hinge or the rail, fixed or not
     kind: str  #: ``hinge`` or ``rail``
     object_nlt: Nlt
     base_nlt: Nlt

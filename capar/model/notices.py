@@ -166,6 +166,11 @@ class NoticeKind:
     by: str = ""
 
 
+_HINGE = "{0!r} turns on a hinge of {1!r} about ({axis}) in its axes"
+_RAIL = "{0!r} slides on a rail of {1!r} along ({axis}) in its axes"
+_OFF = ", with a residual of {residual_mm:.1f} mm"
+_UNCLOSED = "; no closed place of it is known"
+
 #: Each code with its text: every sentence of a notice is here
 KINDS: Mapping[str, NoticeKind] = {
     "long-gap": NoticeKind(_long_gap, "tracks with gaps"),
@@ -192,6 +197,15 @@ KINDS: Mapping[str, NoticeKind] = {
         "{0!r} goes by under the feet of {agent} at {speed_mps:.2f} m/s, as a treadmill does: feet "
         "that move with it stand",
         "grounds that go by under the feet",
+    ),
+    "guide": NoticeKind(
+        {
+            "hinge": f"{_HINGE}, open by up to {{opened_deg:.0f}} degrees{_OFF}",
+            "rail": f"{_RAIL}, open by up to {{opened_mm:.0f}} mm{_OFF}",
+            "pivot": f"{_HINGE}, by up to {{opened_deg:.0f}} degrees{_OFF}{_UNCLOSED}",
+            "track": f"{_RAIL}, by up to {{opened_mm:.0f}} mm{_OFF}{_UNCLOSED}",
+        },
+        by="kind",
     ),
     "pivot-distance": NoticeKind(
         "{0!r} and {1!r} count as touching while their origins are within {distance_mm:.0f} mm",

@@ -33,7 +33,6 @@ from extractors.calibration import thresholds_of
 from extractors.forces.forces import force_styles
 from extractors.measure import Measurements, measure
 from extractors.readers.bundle.capture_toml import read_capture, takes
-from extractors.relations.guides import guide_location
 from extractors.segments import constraint_location, followed, moved_path, sampled_tracks, style
 from extractors.thresholds import Thresholds
 from kb.lookup.pars import Stored
@@ -178,13 +177,10 @@ def observe_measured(
         relations=inference.relations,
         others=capture.others,
         calibration=measurements.calibration,
-        guides=()
-        if base.crossings_only
-        else tuple(
-            guide_location(bodies.objects[name], bodies.objects[guide.base], guide)
-            for name, guide in sorted(measurements.guides.items())
+        guides=() if base.crossings_only else measurements.guides,
+        forces=force_styles(
+            capture, bodies, facts, {guide.object for guide in measurements.guides}
         ),
-        forces=force_styles(capture, bodies, facts, measurements.guides),
         naming=naming_rules(base, (segment.name for segment in segments)),
         tracks=tuple(sampled_tracks(bodies, capture.times)),
     )
