@@ -295,19 +295,20 @@ def _part(
     still = floor.rotation_rad if fit.kind == HINGE else floor.position_m
     ends = int(np.nanargmin(fit.course)), int(np.nanargmax(fit.course))
     at = _stated_course(one, fit, moved, base)
-    if at is not None:
-        nearest, farthest = (
-            np.nanargmin(np.abs(fit.course - at)),
-            np.nanargmax(np.abs(fit.course - at)),
-        )
-        guide = Guide(fit, base.name, int(nearest), int(farthest), still, stated=at)
-        return Part(base, moved, floor, guide)
-    closed = _closed(moved, base, fit, ends, thresholds) if base.planes is not None else None
-    if closed is None and not stated and not _joined(moved, base, fit, ends, thresholds):
+    told = at is None and base.planes is not None
+    closed = _closed(moved, base, fit, ends, thresholds) if told else None
+    found = stated or closed is not None
+    if not found and not _joined(moved, other, base, fit, ends, thresholds):
         return Part(base, moved, floor, None)
-    first, known = (closed[0], True) if closed else _meets(moved, base, fit, ends, thresholds)
-    near, far = ends if first else ends[::-1]
-    return Part(base, moved, floor, Guide(fit, base.name, near, far, still, known))
+    if closed is not None:
+        near, far = ends if closed[0] else ends[::-1]
+        return Part(base, moved, floor, Guide(fit, base.name, near, far, still))
+    if at is None:
+        at = _course_by_shapes(moved, base, fit, ends, thresholds)
+    away = np.abs(fit.course - (fit.course[ends[0]] if at is None else at))
+    near, far = int(np.nanargmin(away)), int(np.nanargmax(away))
+    guide = Guide(fit, base.name, near, far, still, known=at is not None, stated=at)
+    return Part(base, moved, floor, guide)
 
 
 def _steady(fit: GuideFit, thresholds: Thresholds) -> bool:
@@ -340,46 +341,60 @@ def _stated_course(
 
 def _joined(
     body: BodyGeometry,
+    other: BodyGeometry,
     base: BodyGeometry,
     fit: GuideFit,
     ends: tuple[int, int],
     thresholds: Thresholds,
 ) -> bool:
-    """Whether bodies hold together on a hinge, and none merely lies, turns or tips on the other.
+    """Whether bodies hold together on a hinge, and none merely tips on the other.
 
-    What turns about its own edge, and comes to lie on the other, may be tipped.
+    What turns about its own edge, and comes to lie on the other, may be tipped, unless the other
+    is leant in the recording, too.
     """
     if fit.kind != HINGE or base.planes is None or body.planes is None:
         return False
     line = _hinge_line(body, fit, ends[0])
     if max(_outside(line, each, ends[0]).min() for each in (body, base)) > thresholds.hinge_near_m:
         return False
-    if _at_own_edge(body, fit, ends[0], thresholds):
-        shares = [
-            _closed_share(body, base, fit, end, outward, thresholds)
-            for end, outward in zip(ends, (-1.0, 1.0), strict=True)
-        ]
-        return max(shares) < thresholds.closed_share
-    return True
+    shares = [
+        _closed_share(body, base, fit, end, outward, thresholds)
+        for end, outward in zip(ends, (-1.0, 1.0), strict=True)
+    ]
+    if max(shares) < thresholds.closed_share or not _at_own_edge(body, fit, ends[0], thresholds):
+        return True
+    up = other.turns_at(slice(None)) @ other.turn(int(np.argmin(other.poses.lost))).T @ UP
+    return bool((up[:, 2] < np.cos(thresholds.lean_rad)).any())
 
 
-def _meets(
+def _course_by_shapes(
     body: BodyGeometry,
     base: BodyGeometry,
     fit: GuideFit,
     ends: tuple[int, int],
     thresholds: Thresholds,
-) -> tuple[bool, bool]:
-    """Whether a part is nearer to its base at the first end, and whether it is closed there."""
+) -> float | None:
+    """The least angle, also beyond those seen, at which a part meets its base all along [rad].
+
+    None where it does so at both ends of its range, or nowhere.
+    """
     if base.planes is None or fit.kind == RAIL:
-        return True, False
-    gaps = []
-    for end in ends:
-        points = _points(body, end)
-        levers = np.linalg.norm(np.cross(points - fit.point, fit.axis), axis=1)
-        outer = points[levers >= thresholds.outer_share * levers.max()]
-        gaps.append(float(np.median(np.maximum(_outside(outer, base, end), 0.0))) / levers.max())
-    return gaps[0] <= gaps[1], min(gaps) <= thresholds.closed_gap_share < max(gaps)
+        return None
+
+    def meets(end: int, beyond: float) -> bool:
+        arms = Rotation.from_rotvec(beyond * fit.axis).apply(_points(body, end) - fit.point)
+        levers = np.linalg.norm(np.cross(arms, fit.axis), axis=1)
+        outer = fit.point + arms[levers >= thresholds.outer_share * levers.max()]
+        gap_m = float(np.median(np.maximum(_outside(outer, base, end), 0.0)))
+        return gap_m <= thresholds.closed_gap_share * levers.max()
+
+    if all(meets(end, 0.0) for end in ends):
+        return None
+    for beyond in np.arange(0.0, np.pi, thresholds.part_stray_rad):
+        for end, sign in zip(ends, (-1.0, 1.0), strict=True):
+            if meets(end, sign * beyond):
+                return float(fit.course[end] + sign * beyond)
+    return None
 
 
 def _fit(body: BodyGeometry, floor: Floor, thresholds: Thresholds) -> GuideFit | None:
