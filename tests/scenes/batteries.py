@@ -6,6 +6,7 @@ from scenes.hands import SCENES as HANDS
 from scenes.hands.scene import Scene
 from scenes.household import SCENES as HOUSEHOLD
 from scenes.objects import SCENES as OBJECTS
+from scenes.parts import SCENES as PARTS
 from scenes.people import SCENES as PEOPLE
 
 BATTERIES: dict[str, dict[str, Scene]] = {
@@ -13,6 +14,7 @@ BATTERIES: dict[str, dict[str, Scene]] = {
     "objects": OBJECTS,
     "household": HOUSEHOLD,
     "people": PEOPLE,
+    "parts": PARTS,
 }
 """Every battery by its name."""
 

@@ -104,7 +104,8 @@ def main(arguments: list[str] | None = None) -> int:
     """Score one battery and print the outcome."""
     parser = argparse.ArgumentParser(prog="scenes.score", description=__doc__)
     parser.add_argument(
-        "battery", help="name of a package in tests/scenes: hands, objects, household, people"
+        "battery",
+        help="name of a package in tests/scenes: hands, objects, household, people, parts",
     )
     parser.add_argument("--rate", type=float, default=100.0, help="frames a second")
     parser.add_argument("--noise-mm", type=float, default=0.5, help="noise of positions [mm]")

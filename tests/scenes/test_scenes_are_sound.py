@@ -135,6 +135,11 @@ def test_hands_are_on_what_they_touch_and_off_what_they_do_not(scene: Scene) -> 
     """Contact as it is written down is contact of the surfaces."""
     stage = scene.stage
     for time in moments(stage):
+        for finger in stage.fingers:
+            for thing, start, end in finger.touches:
+                if start <= time <= end:
+                    far = gap(Placed.at(finger, time), Placed.at(thing, time))
+                    assert -DEEP_M <= far <= HELD_M, (finger.name, thing.name, time)
         for hand in stage.hands:
             palm = Placed.at(hand, time)
             for thing in stage.things:
@@ -171,7 +176,7 @@ def test_nothing_moves_by_itself(scene: Scene) -> None:
             frame = int(np.searchsorted(times, time))
             holders = [
                 hand.body.poses(times)[frame - 1 : frame + 1]
-                for hand in stage.hands
+                for hand in (*stage.hands, *stage.fingers)
                 if any(start - 1e-9 <= time <= end + 0.02 for _, start, end in hand.touches)
             ]
             kept = [

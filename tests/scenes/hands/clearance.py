@@ -11,6 +11,7 @@ from jaxtyping import Float
 
 from scenes.hands.performer import Hand
 from scenes.hands.shapes import Form
+from scenes.hands.stage import Finger
 from scenes.hands.things import Thing
 
 FAR_M = 0.06
@@ -37,7 +38,7 @@ class Placed:
     pose: Float[np.ndarray, "4 4"]
 
     @classmethod
-    def at(cls, body: Hand | Thing, time: float) -> "Placed":
+    def at(cls, body: Hand | Thing | Finger, time: float) -> "Placed":
         """A body at a time [s]."""
         return cls(body.form, body.body.at(time))
 

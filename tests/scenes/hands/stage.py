@@ -41,6 +41,22 @@ class Watcher:
 
 
 @dataclass
+class Finger:
+    """A part of a hand that is tracked apart from it: what it touches the hand touches."""
+
+    body: Body
+    hand: Hand
+    form: shapes.Form
+    touches: list[tuple[Thing, float, float]] = field(default_factory=list)
+    """What it touches, from when to when [s]."""
+
+    @property
+    def name(self) -> str:
+        """Its sensor's name."""
+        return self.body.name
+
+
+@dataclass
 class Stage:
     """The scene in its own frame: the performer at the origin, looking along x, z up."""
 
@@ -61,6 +77,7 @@ class Stage:
     contact_minimum_s: float | None = None
     things: list[Thing] = field(default_factory=list)
     hands: list[Hand] = field(default_factory=list)
+    fingers: list[Finger] = field(default_factory=list)
     watchers: list["Watcher"] = field(default_factory=list)
     people: dict[str, float] = field(default_factory=dict)
     """Stature of everybody by name [m], where it is given."""
@@ -144,6 +161,7 @@ class Stage:
             return Stream(times, poses[:, :3, 3], turned)
 
         sensors = [_acting(each, stream(each.body, tracked=True)) for each in self.hands]
+        sensors += [_part(each, stream(each.body, tracked=True)) for each in self.fingers]
         seen = [_attending(each, stream(each.body, tracked=True)) for each in self.watchers]
         known = {each.name: each for each in (*sensors, *seen)}
         objects = [
@@ -196,6 +214,11 @@ def _acting(hand: Hand, stream: Stream) -> Sensor:
     link = f"{hand.side}_{'arm' if hand.member == 'hand' else 'leg'}"
     shape = surface(hand.form)
     return Sensor(hand.name, hand.member, hand.side, link, stream, shape, agent=hand.agent)
+
+
+def _part(each: Finger, stream: Stream) -> Sensor:
+    own = replace(each.hand, body=each.body, form=each.form)
+    return replace(_acting(own, stream), part_of=each.hand.name)
 
 
 def _attending(each: Watcher, stream: Stream) -> Sensor:
