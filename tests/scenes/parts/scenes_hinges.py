@@ -46,9 +46,9 @@ def steady(hand: Hand, other: Hand, thing: Thing, duration: float, site: Grip | 
         seize(hand, thing, site, duration, take=False)
     else:
         hand.reach(thing, site, duration, up=0.5)
-    hand.hold(other.clock - hand.clock - 1.2, thing)
+    hand.hold(other.clock - hand.clock - 1.8, thing)
     hand.leave(0.8)
-    hand.rest(other.clock + 0.2 - hand.clock)
+    hand.rest(other.clock - hand.clock)
 
 
 def take_lid(hand: Hand, pair: Pair, duration: float = 0.9, hold: float = 0.4) -> None:

@@ -104,7 +104,7 @@ def cap_pressed_shut_by_a_finger(s: Stage) -> None:
     at_table(s, height=0.69, yaw_deg=-88)
     pair = bottle(s, (0.54, -0.05), start=60.0)
     right = s.right(shapes.pointing_hand(), home=(0.15, -0.28, s.height + 0.3), idle=0.2)
-    top = Grip((-0.054, 0.0, 0.006), (-0.3, 0.0, 0.95), LEFTWARD)
+    top = Grip((-0.054, 0.0, 0.006), UP, LEFTWARD)
     seize(right, pair.part, top, 0.9, hold=0.3, take=False)
     work(right, pair, 0.0, 0.7)
     stay(right, pair, 0.4)
