@@ -85,14 +85,14 @@ class Pair:
     grip: Grip
     """On the part, far from its hinge."""
 
-    face: Grip
+    face: Grip | None = None
     """On the part, for a flat palm."""
 
     def stated(self, *, closed: bool = False) -> "Pair":
         """Let the capture say whose part it is, and where it is closed."""
         self.part.part_of = self.base.name
         along = np.asarray(self.joint.axis)
-        shut = self.joint.shut * float(np.sign(along[np.argmax(np.abs(along))]))
+        shut = self.joint.shut * float(np.sign(along[np.argmax(np.abs(along))])) + 0.0
         if closed and self.joint.rail:
             self.part.closed_m = shut + float(np.abs(along) @ np.asarray(self.joint.point))
         elif closed:
@@ -114,29 +114,25 @@ def work(
     name: str = "",
     *,
     others: tuple[Hand, ...] = (),
+    hold: float = 0.0,
 ) -> None:
-    """Move the part until it is open so far [degrees or m], with hands on it, as one step."""
+    """Move the part until it is open so far [degrees or m], with hands on it, and stay on it."""
     hands, end = (hand, *others), hand.clock + duration
     rides = [each.body.ride(pair.joint, hand.clock) for each in hands]
-    word = name or move(pair, hand.clock, end, to)
-    if name:
-        move(pair, hand.clock, end, to)
+    word = _moved_to(pair, hand.clock, end, to)
     for each, piece in zip(hands, rides, strict=True):
         each.clock = piece.end = end
         settle(end, each.body)
-        each.step(word, pair.part, pair.base)
+        each.step(name or word, pair.part, pair.base)
+        if hold:
+            each.hold(hold, pair.part, pair.base)
 
 
-def move(pair: Pair, start: float, end: float, to: float) -> str:
+def _moved_to(pair: Pair, start: float, end: float, to: float) -> str:
     """Move the part from a time to a time [s], and say what that is called."""
     before = pair.joint.moves[-1][2]
     pair.joint.moves.append((start, end, to))
     return "Open" if to > before else "Close"
-
-
-def stay(hand: Hand, pair: Pair, duration: float) -> None:
-    """Stay on the part after it was moved."""
-    hand.hold(duration, pair.part, pair.base)
 
 
 def bear(hand: Hand, pair: Pair, grip: Grip) -> None:
@@ -209,18 +205,27 @@ def _bend(
 
 
 def squeeze(
-    finger: Finger, pair: Pair, to: float, duration: float, name: str = "", *, by: Vector = ()
+    finger: Finger,
+    pair: Pair,
+    to: float,
+    duration: float,
+    name: str = "",
+    *,
+    by: Vector = (),
+    hold: float = 0.0,
 ) -> None:
     """Move the part with the thumb of the hand that holds the base, perhaps while it is carried."""
     hand = finger.hand
     start, end = hand.clock, hand.clock + duration
     ride = finger.body.ride(pair.joint, start)
-    word = move(pair, start, end, to)
+    word = _moved_to(pair, start, end, to)
     if len(by):
         hand.move(by, duration)
     hand.clock = ride.end = end
     finger.body.ride(hand.body, end)
     hand.step(name or word, pair.part, pair.base)
+    if hold:
+        hand.hold(hold, pair.part, pair.base)
 
 
 def leave_tool(finger: Finger, duration: float, away: Vector = (0.0, 0.0, 0.05)) -> None:
@@ -274,15 +279,15 @@ def laptop(
     point = (x - r, 0.0, high + r - SINK)
     part, joint = put_part(s, base, "lid", lid, start, point=point, axis=LEFTWARD, shut=-90.0)
     tip = Grip((r, 0.0, edge), (0.5, 0.0, 0.87), LEFTWARD)
-    return Pair(base, part, joint, tip, Grip((r, 0.0, 0.6 * deep), AHEAD, (0.0, 0.0, -1.0)))
+    return Pair(base, part, joint, tip)
 
 
 def box(
     s: Stage, at: Vector, *, start: float = 0.0, deep: float = 0.22, wide: float = 0.3,
-    high: float = 0.12, names: tuple[str, str] = ("box", "lid"), tag: str = "mobile",
+    high: float = 0.12, name: str = "box", tag: str = "mobile",
 ) -> Pair:  # fmt: skip
     """A box with a lid on a hinge at its back; the lid has a lip in front."""
-    base = s.put(names[0], forms.open_box(deep, wide, high, names[0], 0.016), at, tag=tag)
+    base = s.put(name, forms.open_box(deep, wide, high, name, 0.016), at, tag=tag)
     r, half = forms.HINGE_M, wide / 2.0 - 0.01
     lid = Form("lid", (
         block((-deep, -half, -r), (-0.004, half, 0.004)),
@@ -290,14 +295,14 @@ def box(
         _pin(r, 0.4 * wide),
     ))  # fmt: skip
     point = (deep / 2.0 - 0.006, 0.0, high + r - SINK)
-    part, joint = put_part(s, base, names[1], lid, start, point=point, axis=LEFTWARD)
+    part, joint = put_part(s, base, "lid", lid, start, point=point, axis=LEFTWARD)
     lip = Grip((-deep - forms.HANDLE_M, 0.0, 0.0), NEAR, UP)
     return Pair(base, part, joint, lip, Grip((-0.65 * deep, 0.0, 0.004), UP, AHEAD))
 
 
-def waffle_iron(s: Stage, at: Vector, *, start: float = 0.0, r: float = 0.11) -> Pair:
+def waffle_iron(s: Stage, at: Vector) -> Pair:
     """A waffle iron: a thick round base and a round cover with a long handle in front."""
-    high, bore = 0.1, forms.HINGE_M
+    r, high, bore = 0.11, 0.1, forms.HINGE_M
     ear = block((0.8 * r, -0.03, 0.0), (r + 0.02, 0.03, high))
     base = s.put("waffle_iron", Form("waffle_iron", (disc(r, 0.0, high, 48), ear)), at)
     back = r + 0.01
@@ -308,16 +313,14 @@ def waffle_iron(s: Stage, at: Vector, *, start: float = 0.0, r: float = 0.11) ->
         _pin(bore, 0.01),
     ))  # fmt: skip
     point = (back, 0.0, high + bore - SINK)
-    part, joint = put_part(s, base, "cover", cover, start, point=point, axis=LEFTWARD)
+    part, joint = put_part(s, base, "cover", cover, 0.0, point=point, axis=LEFTWARD)
     end = Grip((-back - r - 0.1, 0.0, 0.009), NEAR, UP)
-    return Pair(base, part, joint, end, Grip((-back, 0.0, 0.022), UP, AHEAD))
+    return Pair(base, part, joint, end)
 
 
-def folder(
-    s: Stage, at: Vector, *, way: float = 1.0, start: float = 0.0, high: float = 0.03
-) -> Pair:
+def folder(s: Stage, at: Vector, *, way: float = 1.0) -> Pair:
     """A thick folder whose cover turns to the left, or to the right if the way is -1."""
-    wide, tall, r = 0.2, 0.28, 0.003
+    wide, tall, high, r = 0.2, 0.28, 0.03, 0.003
     slab = block((-tall / 2, -wide / 2, 0), (tall / 2, wide / 2, high))
     base = s.put("folder", Form("folder", (slab,)), at)
     near, far = sorted((-way * (wide + 0.012), 0.0))
@@ -325,9 +328,9 @@ def folder(
     spine.apply_transform(rotation_matrix(np.pi / 2.0, UP))
     cover = Form("cover", (block((-tall / 2, near, -r), (tall / 2, far, r)), spine))
     point = (0.0, way * wide / 2.0, high + r - SINK)
-    part, joint = put_part(s, base, "cover", cover, start, point=point, axis=(-way, 0.0, 0.0))
+    part, joint = put_part(s, base, "cover", cover, 0.0, point=point, axis=(-way, 0.0, 0.0))
     edge = Grip((0.0, -way * (wide + 0.012), r), (0.0, -0.87 * way, 0.5), AHEAD)
-    return Pair(base, part, joint, edge, Grip((0.0, -0.6 * way * wide, r), UP, AHEAD))
+    return Pair(base, part, joint, edge)
 
 
 def bottle(s: Stage, at: Vector, *, start: float = 0.0) -> Pair:
@@ -344,40 +347,38 @@ def bottle(s: Stage, at: Vector, *, start: float = 0.0) -> Pair:
     point = (0.017, 0.0, 0.165 + r - SINK)
     part, joint = put_part(s, base, "cap", cap, start, point=point, axis=LEFTWARD)
     tab = Grip((-0.064, 0.0, -0.002), (-0.87, 0.0, -0.5), LEFTWARD)
-    return Pair(base, part, joint, tab, Grip((-0.05, 0.0, 0.006), UP, LEFTWARD))
+    return Pair(base, part, joint, tab)
 
 
 def tray(
-    s: Stage, at: Vector, *, start: float = 0.0, deep: float = 0.26, wide: float = 0.24,
-    high: float = 0.1, name: str = "tray",
-) -> Pair:  # fmt: skip
+    s: Stage, at: Vector, *, start: float = 0.0, deep: float = 0.26, wide: float = 0.24
+) -> Pair:
     """A covered tray about its origin's upright axis, with a drawer that opens to the front."""
-    wall = forms.WALL_M
-    made = _moved((-deep / 2, 0.0, wall), *forms.cabinet(deep, wide, high, name).parts)
-    base = s.put(name, Form(name, made), at)
+    high, wall = 0.1, forms.WALL_M
+    made = _moved((-deep / 2, 0.0, wall), *forms.cabinet(deep, wide, high).parts)
+    base = s.put("tray", Form("tray", made), at)
     drawer = forms.drawer(deep - 0.02, wide - 0.01, high - 0.015)
     point = (-deep / 2.0, 0.0, wall - SINK)
     part, joint = put_part(s, base, "drawer", drawer, start, point=point, axis=NEAR, rail=True)
     handle = Grip((-forms.HANDLE_M, 0.0, 0.5 * (high - 0.015)), NEAR, RIGHTWARD)
-    front = Grip((0.0, -0.07, 0.5 * (high - 0.015)), NEAR, UP)
-    return Pair(base, part, joint, handle, front)
+    return Pair(base, part, joint, handle)
 
 
-def pencil_case(s: Stage, at: Vector, *, start: float = 0.0, way: float = 1.0) -> Pair:
+def pencil_case(s: Stage, at: Vector, *, way: float = 1.0) -> Pair:
     """A case whose lid slides along its rims, to the left or, by a way of -1, to the right."""
     long, wide, high = 0.16, 0.3, 0.1
     base = s.put("pencil_case", forms.open_box(long, wide, high, "pencil_case", 0.014), at)
     knob = block((-0.008, -0.03, 0.006), (0.008, 0.03, 0.066))
     slab = block((-long / 2, -wide / 2 + 0.01, 0), (long / 2, wide / 2 - 0.01, 0.006))
     part, joint = put_part(
-        s, base, "lid", Form("lid", (slab, knob)), start,
+        s, base, "lid", Form("lid", (slab, knob)), 0.0,
         point=(0.0, 0.0, high - SINK), axis=(0.0, way, 0.0), rail=True,
     )  # fmt: skip
     top = Grip((0.0, 0.0, 0.066), UP, AHEAD)
-    return Pair(base, part, joint, top, Grip((0.0, -0.03 * way, 0.04), (0.0, -way, 0.0), AHEAD))
+    return Pair(base, part, joint, top)
 
 
-def trolley(s: Stage, at: Vector, *, way: float = 1.0, start: float = 0.0) -> Pair:
+def trolley(s: Stage, at: Vector, *, way: float = 1.0) -> Pair:
     """A trolley on four feet with a bar on top and a door in front, whose hinge is at one side."""
     deep, wide, high, low = 0.36, 0.4, 0.4, 0.25
     y, top = wide / 2.0, low + high + 0.012
@@ -391,7 +392,7 @@ def trolley(s: Stage, at: Vector, *, way: float = 1.0, start: float = 0.0) -> Pa
     base = s.put("trolley", Form("trolley", (*shell, *feet, *posts, bar)), at)
     door = forms.door(wide, high, way)
     point = (-forms.HINGE_M + SINK, -way * (y + 0.006), low)
-    part, joint = put_part(s, base, "door", door, start, point=point, axis=(0.0, 0.0, way))
+    part, joint = put_part(s, base, "door", door, 0.0, point=point, axis=(0.0, 0.0, way))
     handle = Grip(
         (-0.008 - forms.HANDLE_M, way * (wide - 0.05), 0.4 * high + 0.06), NEAR, RIGHTWARD
     )
@@ -411,7 +412,7 @@ def crossed(
     t = 0.006
 
     def lever(side: float, low: float, thick: float) -> Form:
-        def piece(x: tuple, y: tuple, z: tuple) -> object:
+        def piece(x: Vector, y: Vector, z: Vector) -> Trimesh:
             wide = sorted(side * each for each in y)
             return block((x[0], wide[0], z[0]), (x[1], wide[1], z[1]))
 
@@ -427,7 +428,7 @@ def crossed(
     base = s.put(names[0], lever(-way, -t, 0.024), at)
     part, joint = put_part(s, base, names[1], lever(way, 0.0, 0.016), start, axis=(0.0, 0.0, -way))
     on_part = Grip((-0.09 * size, way * 0.016 * size, 0.0), (0.0, way, 0.0), AHEAD)
-    return Pair(base, part, joint, on_part, on_part)
+    return Pair(base, part, joint, on_part)
 
 
 def on_handle(way: float = 1.0, size: float = 1.0) -> Grip:
@@ -435,7 +436,7 @@ def on_handle(way: float = 1.0, size: float = 1.0) -> Grip:
     return Grip((-0.09 * size, -way * 0.024 * size, 0.0), (0.0, -way, 0.0), AHEAD)
 
 
-def stapler(s: Stage, at: Vector, *, start: float = 25.0) -> Pair:
+def stapler(s: Stage, at: Vector) -> Pair:
     """A stapler whose arm stands up from its foot and is pressed down on it."""
     foot = block((-0.08, -0.022, 0.0), (0.07, 0.022, 0.012))
     base = s.put(
@@ -448,9 +449,9 @@ def stapler(s: Stage, at: Vector, *, start: float = 25.0) -> Pair:
         _pin(r, 0.006),
     ))  # fmt: skip
     point = (0.06, 0.0, 0.036 - SINK)
-    part, joint = put_part(s, base, "arm", arm, start, point=point, axis=LEFTWARD)
+    part, joint = put_part(s, base, "arm", arm, 25.0, point=point, axis=LEFTWARD)
     top = Grip((-0.125, 0.0, 0.01), UP, AHEAD)
-    return Pair(base, part, joint, top, top)
+    return Pair(base, part, joint, top)
 
 
 def fist() -> Form:
