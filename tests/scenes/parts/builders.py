@@ -22,7 +22,7 @@ from scenes.hands.paths import (
     about,
     min_jerk,
     pose,
-)  # fmt: skip
+)
 from scenes.hands.performer import Hand
 from scenes.hands.shapes import Form, block, disc
 from scenes.hands.stage import Finger, Stage
@@ -107,15 +107,9 @@ def settle(time: float, *bodies: Body) -> None:
 
 
 def work(
-    hand: Hand,
-    pair: Pair,
-    to: float,
-    duration: float,
-    name: str = "",
-    *,
-    others: tuple[Hand, ...] = (),
-    hold: float = 0.0,
-) -> None:
+    hand: Hand, pair: Pair, to: float, duration: float, name: str = "", *,
+    others: tuple[Hand, ...] = (), hold: float = 0.0,
+) -> None:  # fmt: skip
     """Move the part until it is open so far [degrees or m], with hands on it, and stay on it."""
     hands, end = (hand, *others), hand.clock + duration
     rides = [each.body.ride(pair.joint, hand.clock) for each in hands]
@@ -205,15 +199,9 @@ def _bend(
 
 
 def squeeze(
-    finger: Finger,
-    pair: Pair,
-    to: float,
-    duration: float,
-    name: str = "",
-    *,
-    by: Vector = (),
-    hold: float = 0.0,
-) -> None:
+    finger: Finger, pair: Pair, to: float, duration: float, name: str = "", *,
+    by: Vector = (), hold: float = 0.0,
+) -> None:  # fmt: skip
     """Move the part with the thumb of the hand that holds the base, perhaps while it is carried."""
     hand = finger.hand
     start, end = hand.clock, hand.clock + duration
