@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from math import inf
+from typing import Any
 
 import numpy as np
 from trimesh import Trimesh
@@ -228,10 +229,10 @@ def leave_tool(finger: Finger, duration: float, away: Vector = (0.0, 0.0, 0.05))
 
 
 def put_part(
-    s: Stage, base: Thing, name: str, form: Form, start: float, **joint: object
+    s: Stage, base: Thing, name: str, form: Form, start: float, **joint: Any
 ) -> tuple[Thing, Jointed]:
     """Set a part on its base's joint, open so far at the first frame [degrees or m]."""
-    body = Jointed(name, np.eye(4), base=base.body, moves=[(0.0, 0.0, start)], **joint)  # type: ignore[arg-type]
+    body = Jointed(name, np.eye(4), base=base.body, moves=[(0.0, 0.0, start)], **joint)
     part = Thing(body, form, TagType.MOBILE)
     s.things.append(part)
     return part, body
