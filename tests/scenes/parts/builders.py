@@ -200,8 +200,7 @@ def _bend(
 
 
 def squeeze(
-    finger: Finger, pair: Pair, to: float, duration: float, name: str = "", *,
-    by: Vector = (), hold: float = 0.0,
+    finger: Finger, pair: Pair, to: float, duration: float, *, by: Vector = (), hold: float = 0.0
 ) -> None:  # fmt: skip
     """Move the part with the thumb of the hand that holds the base, perhaps while it is carried."""
     hand = finger.hand
@@ -212,7 +211,7 @@ def squeeze(
         hand.move(by, duration)
     hand.clock = ride.end = end
     finger.body.ride(hand.body, end)
-    hand.step(name or word, pair.part, pair.base)
+    hand.step(word, pair.part, pair.base)
     if hold:
         hand.hold(hold, pair.part, pair.base)
 

@@ -287,8 +287,8 @@ def lid_that_is_never_shut(s: Stage) -> None:
     pair = parts.box(s, (0.58, 0.05), start=35.0)
     left = s.left(narrow(), idle=0.2)
     take_lid(left, pair, 1.0, 0.4)
-    parts.work(left, pair, 85.0, 1.2, "Turn", hold=0.8)
-    parts.work(left, pair, 45.0, 1.0, "Turn", hold=0.4)
+    parts.work(left, pair, 85.0, 1.2, hold=0.8)
+    parts.work(left, pair, 45.0, 1.0, hold=0.4)
     home_again(left, 0.9)
 
 

@@ -155,8 +155,8 @@ def pliers_that_are_never_shut(s: Stage) -> None:
     left = s.left(parts.fist())
     tip = held(s, left, pair, -1.0, 1.2)
     left.hold(0.6, pair.base)
-    parts.squeeze(tip, pair, 34.0, 0.8, "Turn", hold=0.7)
-    parts.squeeze(tip, pair, 12.0, 0.8, "Turn", hold=0.6)
+    parts.squeeze(tip, pair, 34.0, 0.8, hold=0.7)
+    parts.squeeze(tip, pair, 12.0, 0.8, hold=0.6)
 
 
 def pliers_worked_and_put_on_a_rack(s: Stage) -> None:
