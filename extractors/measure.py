@@ -93,7 +93,6 @@ from extractors.relations.guides import (
     Guide,
     Part,
     guide_location,
-    guide_of,
     parts,
     turns_on_guide,
 )
@@ -180,29 +179,16 @@ class _Trial:
         return np.array(self.calibration.body(name).upright)
 
     @cached_property
-    def _fixed_guides(self) -> dict[str, Guide]:
-        """The hinge or rail on a fixed body of each mobile object that moves on one throughout."""
-        objects = self.bodies.objects
-        fixed = [objects[e.name] for e in self.capture.objects if e.tag is TagType.FIXED]
-        found = {
-            each.name: guide_of(objects[each.name], fixed, self._own_floor(each.name), self.limits)
-            for each in self.capture.objects
-            if each.tag is TagType.MOBILE and not each.part_of
-        }
-        return {name: guide for name, guide in found.items() if guide is not None}
-
-    @cached_property
     def parts(self) -> dict[str, Part]:
         """The parts of things by name: those that are stated, or that a whole recording shows."""
-        movable = set(self.mobile) - set(self.acting) - set(self._fixed_guides)
-        objects = self.bodies.objects
-        return parts(self.capture, objects, movable if self.whole else (), self.limits)
+        floors = {name: self._own_floor(name) for name in self.mobile}
+        free = set(self.mobile) - set(self.acting) if self.whole else ()
+        return parts(self.capture, self.bodies.objects, floors, free, self.limits)
 
     @cached_property
     def guides(self) -> dict[str, Guide]:
         """The hinge or rail of each mobile object that moves on one throughout."""
-        found = {name: part.guide for name, part in self.parts.items()}
-        return self._fixed_guides | {name: guide for name, guide in found.items() if guide}
+        return {name: part.guide for name, part in self.parts.items() if part.guide}
 
     @cached_property
     def wholes(self) -> dict[str, str]:
@@ -210,28 +196,21 @@ class _Trial:
         bases = {name: part.base.name for name, part in self.parts.items()}
         return {name: base for name, base in bases.items() if base in self.mobile}
 
-    def _on_guides(self) -> Iterator[tuple[Guide, BodyGeometry, BodyGeometry]]:
-        """Each guide, what moves on it, and its base, in the axes in which it was fitted."""
-        for name, guide in sorted(self.guides.items()):
-            part = self.parts.get(name)
-            things = self.bodies.objects
-            yield guide, *((part.body, part.base) if part else (things[name], things[guide.base]))
-
     def guide_locations(self) -> Iterator[GuideLocation]:
         """Where on objects and their bases hinges and rails are."""
-        for guide, body, base in self._on_guides():
-            yield guide_location(body, base, guide)
+        for name, guide in sorted(self.guides.items()):
+            yield guide_location(self.parts[name].body, self.parts[name].base, guide)
 
     def guide_notices(self) -> Iterator[Notice]:
         """What hinges and rails were found."""
-        for guide, body, base in self._on_guides():
-            axis = guide.fit.axis @ base.turn(guide.closed)
+        for name, guide in sorted(self.guides.items()):
+            axis = guide.fit.axis @ self.parts[name].base.turn(guide.closed)
             opened = float(np.nanmax(guide.opening))
             turns = guide.fit.kind == HINGE
             yield notice(
                 "guide",
-                body.name,
-                base.name,
+                name,
+                guide.base,
                 kind=guide.kind,
                 axis=", ".join(f"{round(float(part), 2) + 0.0:.2f}" for part in axis),
                 residual_m=guide.fit.residual_m,
@@ -759,7 +738,12 @@ def measured(
     facts += list(trial.handling(tuple(facts)))
     own = [notice for notice in capture.notices if notice.code != LOSS]
     if notices:
-        own += notices_of(capture, calibration, limits)
+        # Who carries a thing need not be near each part of it.
+        own += (
+            each
+            for each in notices_of(capture, calibration, limits)
+            if each.code != "mount-gap" or not set(each.bodies) & set(trial.wholes)
+        )
         own += trial.guide_notices()
         own += faults(capture, bodies, touches, _motions(moves), limits)
     return Measurements(

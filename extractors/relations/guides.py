@@ -9,7 +9,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
-from capar.model.capture import Capture, TagObject
+from capar.model.capture import Capture, TagObject, TagType
 from capar.model.geometry import Holds, Series, Vector
 from capar.model.locations import GuideLocation, Nlt, local_point, normalised, relative_orientation
 from extractors.bodies.bodies import BodyGeometry
@@ -195,10 +195,10 @@ class Guide:
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A part of a thing whose base can be moved, too."""
+    """A part of a thing: a door, a lid, a drawer, a blade of scissors."""
 
     base: BodyGeometry
-    """The base, in the axes in which it stands where it was first known."""
+    """The base; one that can be moved, in the axes in which it stands where it was first known."""
 
     body: BodyGeometry
     """The part, in the same axes."""
@@ -239,28 +239,37 @@ def guide_of(
 def parts(
     capture: Capture,
     objects: Mapping[str, BodyGeometry],
+    floors: Mapping[str, Floor],
     free: Collection[str],
     thresholds: Thresholds,
 ) -> dict[str, Part]:
     """The parts of things, by name (spec 11).
 
-    What a capture states is one; else what moves on a hinge or a rail of a larger mobile body.
-    ``free``: the objects that may be parts, or their bases, without being stated.
+    What a capture states is one; else what moves on a hinge or a rail of a fixed body, or of a
+    larger one.
+
+    ``floors``: of the motion of each mobile object in the world. ``free``: the mobile objects that
+    may be parts of each other, without being stated.
     """
+    fixed = [objects[each.name] for each in capture.objects if each.tag is TagType.FIXED]
     found: dict[str, Part] = {}
     for one in capture.objects:
-        for other in capture.objects:
-            stated = one.part_of == other.name
+        body = objects[one.name]
+        stated = [each for each in capture.objects if each.name == one.part_of]
+        if one.name not in floors:
+            continue
+        guide = None if stated else guide_of(body, fixed, floors[one.name], thresholds)
+        if guide is not None:
+            found[one.name] = Part(objects[guide.base], body, floors[one.name], guide)
+            continue
+        for other in stated or capture.objects:
             larger = (_volume(one), other.name) < (_volume(other), one.name)
-            may = not one.part_of and {one.name, other.name} <= set(free) and larger
-            if not stated and not may:
-                continue
-            if not stated and not _stays_near(objects[one.name], objects[other.name], thresholds):
-                continue
-            part = _part(one, objects[one.name], objects[other.name], thresholds, stated=stated)
-            best = found.get(one.name)
-            if stated or (part.guide and (best is None or _residual(part) < _residual(best))):
-                found[one.name] = part
+            may = {one.name, other.name} <= set(free) and larger
+            if stated or (may and _stays_near(body, objects[other.name], thresholds)):
+                part = _part(one, body, objects[other.name], thresholds, stated=bool(stated))
+                best = found.get(one.name)
+                if stated or (part.guide and (best is None or _residual(part) < _residual(best))):
+                    found[one.name] = part
     return found
 
 
