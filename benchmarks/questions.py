@@ -127,7 +127,7 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("target", type=Path, nargs="?")
     parser.add_argument("--copies", type=int, default=25)
-    parser.add_argument("--capture", default="bimacs_optitrack_take0")
+    parser.add_argument("--capture", default="bimacs_optitrack:take0")
     parser.add_argument("--object", default="bottle")
     parser.add_argument("--performer", default="tall_man")
     options = parser.parse_args()

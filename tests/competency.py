@@ -64,7 +64,7 @@ TAKES = (
     "bimacs_optitrack/shapes.toml:take5",
     "omomo_intermimic/hands.toml:sub2_largetable_008",
 )
-KITCHEN = ("bimacs_optitrack_take0", "bimacs_optitrack_take5")
+KITCHEN = ("bimacs_optitrack:take0", "bimacs_optitrack:take5")
 """The captures of those takes in which things are stirred and poured."""
 
 DEMO = HERE / "capar" / "demo" / "drink_from_mug"

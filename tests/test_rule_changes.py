@@ -216,8 +216,8 @@ def test_takes_of_a_bundle_are_found_again(tmp_path):
             store.add(observe(f"{bundle}/mine.toml:{take}", rules="thesis"))
     _, effect = add_reclassifying(with_examples(tmp_path), **adding(tmp_path))
     assert [(each.capture, each.after) for each in effect.changes] == [
-        ("drink_from_mug_tall_man_take1", "Lift"),
-        ("drink_from_mug_tall_man_take10", "Lift"),
+        ("drink_from_mug_tall_man:take1", "Lift"),
+        ("drink_from_mug_tall_man:take10", "Lift"),
     ]
     with Actionary.open(place, read_only=True) as store:
         assert len({each.rules for each in store.observations()}) == 1

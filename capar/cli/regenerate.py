@@ -205,8 +205,8 @@ def _is_capture(place: str | Path) -> bool:
 
 def _is_action(name: str) -> bool:
     """Whether a word names an action rather than a place in which a capture is."""
-    path = Path(name.partition(":")[0])
-    return path.name == name and not path.suffix and not path.exists()
+    path = Path(name.rpartition(":")[0] or name)
+    return "/" not in str(path) and not path.suffix and not path.exists()
 
 
 def _part(text: str) -> tuple[str, str]:
@@ -418,7 +418,8 @@ def _write(
             walked = capture_of_steps(stepped.steps, name="steps", agent=who)
             write_steps(stepped.steps, walked, folder / f"{number}_steps")
         alone = len(made) == 1 and stepped is None
-        write_motion(done.motion, bundle, folder if alone else folder / f"{number + last}_{name}")
+        numbered = f"{number + last}_{name.replace(':', '_')}"
+        write_motion(done.motion, bundle, folder if alone else folder / numbered)
 
 
 def _perform_request(task: _Task, text: str) -> None:

@@ -32,7 +32,7 @@ from extractors.calibration import calibrate as calibration_of
 from extractors.calibration import thresholds_of
 from extractors.forces.forces import force_styles
 from extractors.measure import Measurements, measure
-from extractors.readers.bundle.capture_toml import read_capture, takes
+from extractors.readers.bundle.capture_toml import place_of, read_capture
 from extractors.segments import constraint_location, followed, moved_path, sampled_tracks, style
 from extractors.thresholds import Thresholds
 from kb.lookup.pars import Stored
@@ -238,20 +238,20 @@ def observe_again(
     for place in places:
         for path in sorted(place.rglob("*.toml")):
             if path.is_file() and sha256(path.read_bytes()).hexdigest() in digests:
-                for trial in _trials(path, known.name):
-                    if sorted(each.sha256 for each in trial.sources) == digests:
-                        found = measure(trial)
-                        # Flicker is resolved if it was in what was measured then.
-                        resolved = next(
-                            (
-                                on
-                                for on in (rules.steady, not rules.steady)
-                                if set(steady(found.facts) if on else found.facts) == set(measured)
-                            ),
-                            rules.steady,
-                        )
-                        again = replace(rules, steady=resolved)
-                        return observe_measured(trial, found, rules=again, name=known.action)
+                trial = replace(read_capture(place_of(path, known.name)), name=known.name)
+                if sorted(each.sha256 for each in trial.sources) == digests:
+                    found = measure(trial)
+                    # Flicker is resolved if it was in what was measured then.
+                    resolved = next(
+                        (
+                            on
+                            for on in (rules.steady, not rules.steady)
+                            if set(steady(found.facts) if on else found.facts) == set(measured)
+                        ),
+                        rules.steady,
+                    )
+                    again = replace(rules, steady=resolved)
+                    return observe_measured(trial, found, rules=again, name=known.action)
     searched = ", ".join(map(str, places))
     raise FileError(
         files[0][0] if files else known.name,
@@ -259,14 +259,3 @@ def observe_again(
         "have changed; nothing was renamed.",
         "Name the folder that holds them with --captures, or observe and add it again.",
     )
-
-
-def _trials(path: Path, name: str) -> Iterator[Capture]:
-    """The captures that a file describes and that may bear a name: of its takes, or the one."""
-    known = takes(path)
-    # A capture is called after its take, so that the others need not be read.
-    named = sorted((each for each in known if each in name), key=lambda each: (-len(each), each))
-    for place in [f"{path}:{each}" for each in named] if known else [path]:
-        trial = read_capture(place)
-        if trial.name == name:
-            yield trial

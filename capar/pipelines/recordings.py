@@ -10,6 +10,7 @@ from capar.model.par import ComplexPar, Step, Upar
 from capar.regeneration.efforts import EffortReport
 from capar.regeneration.motion import Motion
 from capar.regeneration.quality import Quality
+from extractors.readers.bundle.capture_toml import place_of
 from kb.actionary import Actionary
 from kb.store import names
 from ontology import CAPAR
@@ -96,6 +97,7 @@ def stored_recordings(
             continue
         par = actionary.complex_par(each.name)
         kinds = {name: actionary.kinds_above(name)[:1] for name in par.objects}
+        place = Path(place_of(place, each.name))
         found.append(Recording(each.name, place, par, general, kinds))
     return tuple(found), tuple(lost)
 

@@ -1,6 +1,8 @@
 """`capar observe` and `capar facts`, also live: what they print, refuse and ask for."""
 
 import json
+import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -52,6 +54,21 @@ def test_the_tables_show_segments_and_steps() -> None:
     assert steps == STEPS
     assert "note [contact-tolerance]" in done.stderr
     assert Path("out.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_take_is_asked_for_by_the_name_by_which_it_was_observed() -> None:
+    shutil.copytree(DEMO, "kitchen")
+    text = Path("kitchen/capture.toml").read_text()
+    text = re.sub('^name = ".*"$', 'takes = ["motion"]', text, count=1, flags=re.MULTILINE)
+    Path("kitchen/capture.toml").write_text(text.replace("motion.csv", "{take}.csv"))
+    kept = ("--actionary", "actionary")
+    run("observe", "kitchen:motion", *THESIS, *kept, "--new")
+    asked = run("query", "segments", "capture=kitchen:motion", *kept)
+    assert "kitchen:motion/right_hand/0" in asked
+    assert "Reach" in run("show", "kitchen:motion", *kept)
+    assert "kitchen:motion" in run("export", "--observation", "kitchen:motion", *kept)
+    run("forget", "kitchen:motion", *kept)
+    assert "kitchen:motion" not in run("query", "observations", *kept)
 
 
 def test_json_keeps_to_the_published_schema_and_reads_back() -> None:

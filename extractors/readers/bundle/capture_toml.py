@@ -106,6 +106,12 @@ def takes(place: str | Path) -> list[str]:
     return list(take_words(place))
 
 
+def place_of(file: Path, name: str) -> str:
+    """Where the capture of a name is: in a file, or in the take of it that the name contains."""
+    own = [each for each in takes(file) if each in name]
+    return f"{file}:{max(own, key=len)}" if own else str(file)
+
+
 def take_words(place: str | Path) -> dict[str, dict[str, str]]:
     """What ``{...}`` stands for in each take of a bundle; empty where it has one take only."""
     return _takes(*read_toml(find_place(place)[0]))
@@ -224,7 +230,7 @@ def read_capture(place: str | Path) -> Capture:
     meshes = dict.fromkeys(source for frame in frames for source in frame.sources)
     try:
         trial = Capture(
-            name=f"{name}_{bundle.take}" if bundle.take and bundle.take not in name else name,
+            name=f"{name}:{bundle.take}" if bundle.take not in {"", name} else name,
             sensors=tuple(sensors),
             objects=tuple(objects),
             agent=agents[0],

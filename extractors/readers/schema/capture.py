@@ -495,7 +495,8 @@ class Takes(Entry):
             Discriminator(form_of_value),
         ]
     ] = key(
-        "Names of the trials that the file describes, each a text or a table with ``take``; "
+        "Names of the trials that the file describes, each a text or a table with ``take``; the "
+        "capture is called ``name:take``; "
         "{take} and the table's other keys in braces are replaced in every text.",
         [],
     )

@@ -132,7 +132,7 @@ def test_a_take_fills_the_names_of_files(tmp_path: Path) -> None:
     text = 'takes = ["m", { take = "other" }]\n' + BASE.replace("m.csv", "{take}.csv")
     place = bundle(tmp_path, text)
     assert takes(place) == ["m", "other"]
-    assert read_capture(f"{place}:m").name == "trial_m"
+    assert read_capture(f"{place}:m").name == "trial:m"
     with pytest.raises(UnknownNameError, match="no take 'n'"):
         read_capture(f"{place}:n")
     with pytest.raises(FileError, match="Name one of them"):
