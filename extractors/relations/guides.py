@@ -306,6 +306,11 @@ def _part(
     at = _stated_course(one, fit, moved, base)
     told = at is None and base.planes is not None
     closed = _closed(moved, base, fit, ends, thresholds) if told else None
+    if told and closed is None and fit.kind == RAIL:
+        side = np.cross(fit.axis, UP)
+        ways = (each / np.linalg.norm(each) for each in (side, -side, -UP) if each.any())
+        covers = (_covering(moved, base, fit, ends, way, still, thresholds) for way in ways)
+        closed = max((each for each in covers if each), key=lambda each: each[1], default=None)
     found = stated or closed is not None
     if not found and not _joined(moved, other, base, fit, ends, thresholds):
         return Part(base, moved, floor, None)
@@ -356,13 +361,17 @@ def _joined(
     ends: tuple[int, int],
     thresholds: Thresholds,
 ) -> bool:
-    """Whether bodies hold together on a hinge, and none merely tips on the other.
+    """Whether bodies hold together on a guide, and none merely is pushed or tips on the other.
 
-    What turns about its own edge, and comes to lie on the other, may be tipped, unless the other
-    is leant in the recording, too.
+    On a rail the base is on both sides of the part. What turns about its own edge, and comes to lie
+    on the other, may be tipped, unless the other is leant in the recording, too.
     """
-    if fit.kind != HINGE or base.planes is None or body.planes is None:
+    if base.planes is None or body.planes is None:
         return False
+    if fit.kind == RAIL:
+        deeper = max(ends, key=lambda end: inside_share(body, base, end))
+        inside = inside_share(body, base, deeper) > 0.0
+        return inside and _confined(body, base, fit.axis, deeper, thresholds)
     line = _hinge_line(body, fit, ends[0])
     if max(_outside(line, each, ends[0]).min() for each in (body, base)) > thresholds.hinge_near_m:
         return False
