@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from capar.model.errors import FileError, NoAnswerError
+from capar.model.figures import figure
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -114,7 +115,7 @@ def _text(cell: Any) -> str:
         return "yes" if cell else "NO"
     if isinstance(cell, list | tuple):
         return ", ".join(map(_text, cell))
-    return "" if cell is None else f"{cell:.4g}" if isinstance(cell, float) else str(cell)
+    return "" if cell is None else figure(cell) if isinstance(cell, float) else str(cell)
 
 
 def console() -> "Console":

@@ -9,6 +9,7 @@ from typing import TypeAlias
 from pyoxigraph import Literal, NamedNode, Quad
 
 from capar.model.errors import UnknownNameError
+from capar.model.figures import figures
 from kb.encode import shared
 from kb.errors import StoreError
 from kb.lookup.pars import Pars
@@ -230,7 +231,7 @@ def _profile(store: Store, node: NamedNode, fields: Mapping[str, str]) -> Fields
         terms = {label or value for value, label in rows}
         found[field] = tuple(
             sorted(
-                each.value
+                figures(each.value)
                 if isinstance(each, Literal)
                 else str(each).strip("<>").rsplit("/", 1)[-1]
                 for each in terms

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from pyoxigraph import Literal, NamedNode, RdfFormat, serialize
 
 from capar.model.errors import CaparError, UnknownNameError
+from capar.model.figures import figure, rounded
 from kb.store import names, sparql, statements
 from kb.store.answer_values import Answer, Plain, exact, plain, turtle
 from kb.store.answer_values import Found as Term
@@ -333,7 +334,7 @@ def cells(answer: Answer) -> list[tuple[str, ...]]:
         return [("yes" if answer.boolean else "no",)]
     rows = (map(plain, row) for row in _rows(answer))
     return [
-        tuple("" if e is None else f"{e:.6g}" if isinstance(e, float) else str(e) for e in row)
+        tuple("" if e is None else figure(e) if isinstance(e, float) else str(e) for e in row)
         for row in rows
     ]
 
@@ -356,10 +357,14 @@ def as_csv(answer: Answer) -> str:
 
 
 def as_json(answer: Answer) -> str:
-    """A list of objects, IRIs in full, or a truth; statements as JSON-LD."""
+    """A list of objects, numbers to six places, IRIs in full, or a truth; or JSON-LD."""
     if answer.triples is not None:
         return (serialize(answer.triples, format=RdfFormat.JSON_LD) or b"").decode() + "\n"
-    rows = [dict(zip(answer.variables, map(exact, row), strict=True)) for row in answer.rows]
+    terms = (
+        [rounded(e, 6) if isinstance(e, float) else e for e in map(exact, row)]
+        for row in answer.rows
+    )
+    rows = [dict(zip(answer.variables, row, strict=True)) for row in terms]
     value = rows if answer.boolean is None else answer.boolean
     return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
 
