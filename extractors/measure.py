@@ -503,15 +503,16 @@ class _Trial:
                 body = touching_part(self.bodies, touch.body, other, frame)
             else:
                 body = self.bodies.objects[touch.body]
+            normal = contact_normal(body, other, frame, self.limits)
             swapped = upward.get((touch.other, touch.body, frame))
             if swapped is not None:
                 yield ContactNormal(*names, frame, -swapped)
-            elif (normal := contact_normal(body, other, frame, self.limits)) is not None:
+            elif normal is not None:
                 upward[*names, frame] = round(1000.0 * float(normal[2]))
                 yield ContactNormal(*names, frame, upward[*names, frame])
                 if touch.body in self.acting:
                     yield from self._sides(touch, normal)
-            speed_mm = round(1000.0 * closing_speed(body, other, frame))
+            speed_mm = round(1000.0 * closing_speed(body, other, frame, normal))
             yield ClosingSpeed(*names, frame, speed_mm)
 
     def _sides(self, touch: Touching, normal: Vector) -> Iterator[Fact]:

@@ -28,6 +28,7 @@ from capar_rules.explain.quantities import QUANTITIES
 from extractors.bodies.bodies import BodyGeometry
 from extractors.calibration import thresholds_of
 from extractors.contact.contacts import points_apart
+from extractors.contact.normals import contact_normal
 from extractors.contact.proximity import separation
 from extractors.contact.touch_distances import touchable
 from extractors.measure import Measurements
@@ -205,7 +206,9 @@ def _speed(known: Measures, asked: Measured, frames: Frames) -> Series:
 
 def _closing(known: Measures, asked: Measured, frames: Frames) -> Series:
     one, other = map(known.body, asked.bodies)
-    speeds = MILLI * np.array([closing_speed(one, other, int(frame)) for frame in frames])
+    limits = thresholds_of(known.measurements.calibration)
+    normal = contact_normal(one, other, asked.first, limits)
+    speeds = MILLI * np.array([closing_speed(one, other, int(each), normal) for each in frames])
     bars = known.bars(Touching, body=asked.bodies[0], other=asked.bodies[1])
     return Series(frames, speeds, (), bars, "in contact")
 

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from capar.model.geometry import Series
+from capar.model.geometry import Places, Series, Vector
 from extractors.bodies.bodies import BodyGeometry
 from extractors.bodies.poses import rotation_matrices
 from extractors.signals.filters import speed, velocity
@@ -34,27 +34,52 @@ FEWEST_PLACES = 4
 """A steady acceleration has three unknowns, and one place more shows what is noise [1]."""
 
 
-def closing_speed(body: BodyGeometry, other: BodyGeometry, frame: int) -> float:
-    """How fast two bodies' middles move relative to each other just before a frame [m/s].
+def closing_speed(
+    body: BodyGeometry, other: BodyGeometry, frame: int, normal: Vector | None = None
+) -> float:
+    """How fast two bodies approach each other, where they meet, just before a frame [m/s].
 
-    The fastest relative speed of the low-passed motion in the last twentieth of a second or, if
-    more, that of their offset as it was recorded, at the end of a steady acceleration: a filter
-    rounds a blow that ends in a halt, and lets it touch later. Zero where either is lost or
-    the contact begins the capture.
+    Of what goes along the surface that is met nothing counts. The fastest approach of the
+    low-passed motion in the last twentieth of a second or, if more, that of the motion as it was
+    recorded, at the end of a steady acceleration: a filter rounds a blow that ends in a halt, and
+    lets it touch later. Zero where either is lost or the contact begins the capture.
+
+    ``normal``: the unit normal of their contact, from the other to the body; None if unknown.
     """
     times = body.poses.filled.times
+    boxes = [each.boxes for each in (body, other)]
+    low, high = (np.array([box[side][frame] for box in boxes]) for side in (0, 1))
+    place = (low.max(axis=0) + high.min(axis=0)) / 2.0
+    axis = np.eye(3) if normal is None else np.asarray(normal)[:, None]
+
+    def offset(first: int, *, recorded: bool) -> Float[np.ndarray, "some axes"]:
+        one, two = (
+            _material_point(each, place, frame, first, recorded=recorded) for each in (body, other)
+        )
+        return np.asarray((one - two) @ axis)
+
     first = _before(times, frame, APPROACH_S)
-    span = slice(first, frame + 1)
-    offset = body.middles[span] - other.middles[span]
-    if frame == 0 or len(offset) < 2 or np.isnan(offset).any():
+    way = offset(first, recorded=False)
+    if frame == 0 or len(way) < 2 or np.isnan(way).any():
         return 0.0
-    speeds = np.linalg.norm(np.diff(offset, axis=0), axis=1) / np.diff(times[span])
+    speeds = np.linalg.norm(np.diff(way, axis=0), axis=1) / np.diff(times[first : frame + 1])
     begin = _before(times, frame, LATE_S + SWING_S)
-    span = slice(begin, frame + 1)
-    recorded, clock = recorded_middles(body, span) - recorded_middles(other, span), times[span]
+    met, clock = offset(begin, recorded=True), times[begin : frame + 1]
     ends = range(_before(times, frame, LATE_S), frame + 1)
-    spans = (slice(_before(times, end, SWING_S) - begin, end + 1 - begin) for end in ends)
-    return max(float(speeds.max()), *(_speed_at_end(recorded[s], clock[s]) for s in spans))
+    spans = (slice(max(_before(times, end, SWING_S) - begin, 0), end + 1 - begin) for end in ends)
+    return max(float(speeds.max()), *(_speed_at_end(met[s], clock[s]) for s in spans))
+
+
+def _material_point(
+    body: BodyGeometry, place: Vector, frame: int, first: int, *, recorded: bool
+) -> Places:
+    """Where the point of a body that is at a place [m] at a frame was from a first frame on."""
+    known = body.poses
+    stream = known.filled if recorded else known.settled if known.rests else known.smooth
+    span = slice(first, frame + 1)
+    turns = rotation_matrices(stream.orientations[span])
+    arm = turns[-1].T @ (place - stream.positions[frame])
+    return np.asarray(stream.positions[span] + turns @ arm)
 
 
 def _before(times: Series, frame: int, span_s: float) -> int:
@@ -82,7 +107,9 @@ def recorded_middles(body: BodyGeometry, span: slice) -> Float[np.ndarray, "some
     )
 
 
-def _speed_at_end(places: Float[np.ndarray, "some 3"], times: Float[np.ndarray, "some"]) -> float:
+def _speed_at_end(
+    places: Float[np.ndarray, "some axes"], times: Float[np.ndarray, "some"]
+) -> float:
     """Speed at the end of a steadily accelerated motion, fitted by least squares [m/s]."""
     if len(places) < FEWEST_PLACES or np.isnan(places).any():
         return 0.0

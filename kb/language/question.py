@@ -46,6 +46,9 @@ _PATHS = {
 """Where an observation has what is asked for where it is asked of what was not done."""
 
 
+_OTHER, _BODY = "capar:other/capar:name", "capar:body/(capar:name|capar:ee)"
+
+
 def _fragment(name: str, suffix: str = "") -> str:
     text = (files("kb") / "language" / "sparql" / f"{name}.rq").read_text(encoding="utf-8")
     return text.replace("@", suffix).rstrip()
@@ -58,8 +61,10 @@ def _segment(about: Instruction, suffix: str, *, counted: bool) -> Iterator[str]
     for number, name in enumerate(about.call.objects):
         if name and name != GAP:
             role = ("dominant", "subordinate", "object")[min(number, 2)]
-            path = f"capar:{role}/(capar:name|(capar:kind/capar:isA/capar:name))"
-            yield f"  ?segment{suffix} {path} {_text(name)} ."
+            named = f"(capar:name|(capar:kind/capar:isA/capar:name)) {_text(name)} ."
+            it = f"  ?segment{suffix} capar:{role}/{named}"
+            goal = _fragment("goal", suffix)
+            yield f"  {{ {it} }} UNION {{\n{goal}/{named} }}" if number == 1 else it
     yield from _doer(about, suffix)
     if about.call.purpose:
         yield f"  ?segment{suffix} capar:purpose {_text(about.call.purpose)} ."
@@ -123,9 +128,9 @@ def _where(about: Instruction, suffix: str) -> Iterator[str]:
     for name, prepositions, place in stated:
         yield f"  VALUES ?preposition_{name} {{ {' '.join(map(_text, prepositions))} }}"
         yield f"  ?segment{suffix} capar:placement ?{name} ."
-        yield f"  ?{name} capar:preposition ?preposition_{name} ; capar:other {_text(place)} ."
+        yield f"  ?{name} capar:preposition ?preposition_{name} ; {_OTHER} {_text(place)} ."
         if body := _body(about):
-            yield f"  ?{name} capar:body {body} ."
+            yield f"  ?{name} {_BODY} {body} ."
 
 
 def _body(about: Instruction) -> str:
@@ -161,14 +166,14 @@ def _bound(about: Instruction, variables: set[str]) -> Iterator[str]:
         yield "  ?segment capar:action/capar:name ?action ."
     if "place" in variables and state:
         yield "  ?segment capar:placement ?being ."
-        yield f"  ?being capar:body {_body(about) or '?body'} ; capar:other ?place ;"
+        yield f"  ?being {_BODY} {_body(about) or '?body'} ; {_OTHER} ?place ;"
         yield "    capar:preposition ?preposition ."
     elif "place" in variables:
         yield "  ?segment capar:subordinate/capar:name ?place ."
     if "source" in variables:
         yield "  VALUES ?taken { " + " ".join(map(_text, SOURCES)) + " }"
         yield "  ?segment capar:placement ?leaving ; capar:dominant/capar:name ?left ."
-        yield "  ?leaving capar:preposition ?taken ; capar:body ?left ; capar:other ?source ."
+        yield f"  ?leaving capar:preposition ?taken ; {_BODY} ?left ; {_OTHER} ?source ."
 
 
 def _condition(condition: Condition, suffix: str) -> Iterator[str]:

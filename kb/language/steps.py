@@ -194,6 +194,9 @@ class Narrator:
         if source and text in {"lift {1}", "bring {1} to {2}"}:
             word = "off" if text == "lift {1}" else "from"
             return text.replace("{1}", f"{{1}} {word} {{{count + 1}}}"), (*objects, *source)
+        goal = [each for each in others if each[0] in {"into", "onto"}][:1]
+        if goal and text == "drop {1}":
+            return f"drop {{1}} {goal[0][0]} {{{count + 1}}}", (*objects, goal[0][1])
         loads = [other for word, other in others if word == "with" and segment.possessed]
         if loads:
             loaded = joined([f"{{{count + at}}}" for at in range(1, len(loads) + 1)])
