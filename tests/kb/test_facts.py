@@ -174,7 +174,7 @@ FORCE = ForceStyle(
 
 def test_the_thesis_profile_keeps_the_thesis_damping(actionary: Actionary) -> None:
     actionary.add(replace(drink_from_mug(), profile="thesis", forces=(FORCE,)))
-    assert actionary.object_profile("mug")["state: damping"] == ("0.1 0.25 0.0",)
+    assert actionary.object_profile("mug")["state: damping"] == ("0.1 0.25 0",)
 
 
 def test_what_was_let_go_keeps_how_it_bounces(actionary: Actionary) -> None:
