@@ -184,8 +184,8 @@ def test_takes_are_captures_one_by_one_or_all(bundle):
 def test_each_take_is_judged_for_itself(bundle):
     path = written(bundle.parent, '["bundle:*"]', "right_hand ResumePosture")
     whole, short = run_motion_test(read_motion_test(path))
-    assert (whole.capture, whole.holds) == ("drink_from_mug_tall_man_whole", True)
-    assert (short.capture, short.holds) == ("drink_from_mug_tall_man_short", False)
+    assert (whole.capture, whole.holds) == ("drink_from_mug_tall_man:whole", True)
+    assert (short.capture, short.holds) == ("drink_from_mug_tall_man:short", False)
 
 
 BAD = ("right_hand Lfit(mug)", "no right_hand Drink(mugg, head)", "right_hand: lift")
