@@ -429,11 +429,12 @@ def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]
         frames |= {frame for name in reach for each in moves[name] for frame in _ends(each)}
         frames |= {each.refined for each in refined}
         frames |= {frame for each in others for frame in true_ends(each, scene.seats)}
+        before, after = scene.frames.first - 1, scene.frames.last + 1
         borne = sorted((as_borne(each, scene.seats) for each in own), key=_ends)
         frames |= {frame for each in borne for frame in _ends(each)}
         frames |= {
             pause
-            for gap in _free(own)
+            for gap in _free([(before, before), *map(_ends, own), (after, after)])
             for pause in scene.pauses[ee][
                 bisect_right(scene.pauses[ee], gap[0]) : bisect_left(scene.pauses[ee], gap[1])
             ]
@@ -457,7 +458,7 @@ def _number_link(scene: _Scene, ee: str, crossings_only: bool) -> Iterable[Fact]
     )
     yield from (
         FreeBetween(ee, bisect_left(ticks, gap[0]), bisect_left(ticks, gap[1]))
-        for gap in (() if crossings_only else _free(own))
+        for gap in (() if crossings_only else _free(map(_ends, own)))
     )
     yield from (
         MovesDuring(ee, each.other, each.first)
@@ -489,14 +490,14 @@ def _reach(own: Iterable[Touching], margin: int) -> dict[str, list[tuple[int, in
     return dict(sorted(reach.items()))
 
 
-def _free(own: Iterable[Touching]) -> list[tuple[int, int]]:
+def _free(contacts: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
     """Last and first frames of neighbouring contacts, whatever is touched, with none between."""
     gaps: list[tuple[int, int]] = []
     last = None
-    for contact in own:
-        if last is not None and contact.first > last + 1:
-            gaps.append((last, contact.first))
-        last = contact.last if last is None else max(last, contact.last)
+    for first, end in contacts:
+        if last is not None and first > last + 1:
+            gaps.append((last, first))
+        last = end if last is None else max(last, end)
     return gaps
 
 

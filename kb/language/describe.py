@@ -7,7 +7,7 @@ from typing import Literal
 
 from capar.model.capture import Agent
 from capar.model.observation import Observation, ObservedLink, ObservedObject
-from kb.language.steps import ON_FOOT, QUIET, Narrator, Step, spoken
+from kb.language.steps import FREE, NAMELESS, ON_FOOT, QUIET, Narrator, Step, spoken
 from kb.lexicon.english import PEOPLE, capital, joined, past, the, the_agent, times
 from kb.lexicon.links import PrimitiveWords
 
@@ -15,9 +15,6 @@ Detail = Literal["steps", "summary"]
 
 MOST_STEPS = 8
 """The most steps of a sentence."""
-
-FREE = "PostureChange"
-"""The primitive of motion that is of no object."""
 
 OPENINGS = ("Then ", "Next, ", "After that, ")
 """How sentences begin about what was done afterwards, in turn."""
@@ -134,10 +131,11 @@ class _Writer:
             text = f"{past(verb)} {rest}".strip()
             hand = self._hands(step.ees)
             if "{ee}" in text:
-                text = text.replace(
-                    "{ee}", f"the {self._links[step.ees[0]].kind}" if named else hand
-                )
-            elif not named and step.pattern not in ON_FOOT:
+                kind = self._links[step.ees[0]].kind
+                again = f"the {kind}" if topic else ("it", "them")[len(step.ees) - 1]
+                text = text.replace("{ee}", again if named else hand)
+                named = named or not step.objects
+            elif not named and step.pattern not in NAMELESS:
                 text += f" {'using' if '{1} with {' in text else 'with'} {hand}"
                 named = True
             said = [name for place, name in enumerate(step.objects, 1) if f"{{{place}}}" in text]

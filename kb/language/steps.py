@@ -24,6 +24,12 @@ QUIET = frozenset({"reach for {1}", "let go of {1}", "take {ee} away"})
 ON_FOOT = frozenset({"walk", "take a step", "take some steps"})
 """Patterns of the whole body, which name no foot."""
 
+NAMELESS = ON_FOOT | {"clap the hands"}
+"""Patterns that say who does it without an end-effector."""
+
+FREE = "PostureChange"
+"""The primitive of motion that is of no object."""
+
 
 @dataclass(frozen=True)
 class Step:
@@ -125,13 +131,22 @@ class Narrator:
         steps = [
             self._step(members, link)
             for members in groups.values()
-            if any(each.objects for each in members) and members[0] not in self._takings.values()
+            if any(each.objects or self._gesture(each, link) for each in members)
+            and members[0] not in self._takings.values()
         ]
         steps.sort(key=lambda each: each.start_s)
         last = {step.purpose: at for at, step in enumerate(steps) if step.changes}
         said = {step.pattern.split()[0] for step in steps}
         ends = {at: self._end(purpose, said) for purpose, at in last.items()}
         return [replace(step, purpose=ends.get(at, "")) for at, step in enumerate(steps)]
+
+    def _gesture(self, segment: Segment, link: ObservedLink) -> bool:
+        """Whether motion of no object is worth a word: it has its own, or the limb handles nothing."""
+        if segment.name == FREE:
+            tags = {self._tags.get(name) for each in link.segments for name in each.objects}
+            moved = {word for word, _, _ in segment.prepositions} & {"up", "down"}
+            return link.kind == "hand" and bool(moved) and tags <= {"self", None}
+        return FREE in segment.general and not segment.objects
 
     def _end(self, purpose: str, said: set[str]) -> str:
         """A purpose as a verb; none where a step says it or another segment has its name."""
@@ -143,10 +158,12 @@ class Narrator:
 
     def _step(self, members: Sequence[Segment], link: ObservedLink) -> Step:
         """The step of segments that are one action: the last one that changes something says it."""
-        own = [each for each in members if each.objects]
         own = [
-            each for each in own if not self._kinds[each.ee, each.index] & {"fragment_of", "rights"}
-        ] or own
+            each
+            for each in members
+            if not self._kinds[each.ee, each.index] & {"fragment_of", "rights"}
+        ]
+        own = [each for each in own if each.objects] or own or list(members)
         changing = [each for each in own if each.features.rel_start != each.features.rel_end]
         said = changing[-1] if changing else own[0]
         earlier = [e for e in link.segments if e.index < members[0].index and e.objects]
@@ -188,7 +205,7 @@ class Narrator:
         others = [
             (word, other)
             for word, body, other in segment.prepositions
-            if body == objects[0] and other not in objects
+            if objects[:1] == (body,) and other not in objects
         ]
         source = [other for word, other in others if word in {"off", "out of"}][:1]
         if source and text in {"lift {1}", "bring {1} to {2}"}:
@@ -214,6 +231,8 @@ class Narrator:
             "turns": motion is Motion.ROTATION,
             "tilts": motion is Motion.BOTH,
             "alone": len(segment.objects) < 2,
+            "rises": ("up", segment.ee, segment.ee) in segment.prepositions,
+            "sinks": ("down", segment.ee, segment.ee) in segment.prepositions,
         }
         if len(segment.objects) > 1:
             pair = thing, other = segment.objects[:2]
@@ -286,13 +305,14 @@ class Narrator:
 
         It is a joint action by the rules, or the same action for more than half of the time.
         """
-        if own.objects[:1] != other.objects[:1]:
+        each_other = (own.objects[:1], other.objects[:1]) == (other.ees, own.ees)
+        if own.objects[:1] != other.objects[:1] and not each_other:
             return None
         for joint in self._seen.joint:
             parts = set(zip(joint.ees, joint.segments, strict=True))
             if parts & set(own.segments) and parts & set(other.segments):
                 return joint.name
-        alike = (own.pattern, own.objects) == (other.pattern, other.objects)
+        alike = own.pattern == other.pattern and (each_other or own.objects == other.objects)
         shared_s = min(own.end_s, other.end_s) - max(own.start_s, other.start_s)
         longest_s = max(own.end_s - own.start_s, other.end_s - other.start_s)
         return "" if alike and 2.0 * shared_s > longest_s else None
@@ -315,7 +335,14 @@ class Narrator:
             parts = tuple(key for step in taken for key in step.segments)
             pattern = "take a step" if len(parts) == 1 else "take some steps"
             yield Step(pattern, (), ees, start_s, end_s, "Step", True, parts)
-        yield from (step for step in done if step.name not in {"Step", "Stand", "RestFoot"})
+        told = [step for step in done if step.name not in {"Step", "Stand", "RestFoot"}]
+        kicks = [step for step in told if step.name == "KickOut"]
+        yield from (
+            step
+            for step in told
+            if step.name != "StandOnOneLeg"
+            or not any(k.start_s < step.end_s and step.start_s < k.end_s for k in kicks)
+        )
 
 
 def spoken(link: ObservedLink) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from jaxtyping import Float
 
 from extractors.readers.drafting.contents import (
     STATURE_M,
@@ -41,6 +42,8 @@ EDIT = "# EDIT:"
 
 FOOT_RADIUS_M = 0.03  # Radius of a foot's stand-in: half the thickness of a foot [m].
 HAND_RADIUS_M = 0.04
+HEAD_RADIUS_M = 0.1
+PALM_SHARE = 0.37  # How far ahead of the wrist a palm's middle is [share of the forearm] (Winter 2009).
 FLOOR_M = 0.02  # Thickness of a floor [m].
 WIDTH = 96  # Comments are no longer than this.
 
@@ -189,15 +192,12 @@ def _bodies(file: _File) -> Iterator[_Body]:
     names = list(kinds or ({} if recording.parents else recording.bodies))
     for name in names or list(recording.bodies)[:1]:
         side = file.body[name].side if name in file.body else "none"
-        shape = ""
-        if kinds.get(name) == "foot" and name in recording.parents.values():
-            shape = f'{{ capsules = "children", radius_m = {FOOT_RADIUS_M:g} }}   # a stand-in'
         yield _Body(
             name,
             file.key,
             f"body = {quoted(name)}",
             side if side != "none" else side_of(name),
-            shape,
+            _stand_in(file, name, kinds.get(name, "")),
             _gaze(file, name) if kinds.get(name) == "head" else None,
         )
     for name, members in file.others.sets.items():
@@ -207,11 +207,39 @@ def _bodies(file: _File) -> Iterator[_Body]:
         yield _Body(name, file.key, key, side_of(name), shape, fixed=fixed)
 
 
+def _stand_in(file: _File, name: str, limb: str) -> str:
+    """A rough shape of a skeleton's hand, foot or head, in its joint's frame; empty if unknown.
+
+    It is around the bones that are there; else before the end of the forearm, or above the neck.
+    """
+    parent = file.recording.parents.get(name, "")
+    radius_m = {"foot": FOOT_RADIUS_M, "hand": HAND_RADIUS_M, "head": HEAD_RADIUS_M}.get(limb)
+    if radius_m is None or not parent:
+        return ""
+    if limb != "head" and name in file.recording.parents.values():
+        return f'{{ capsules = "children", radius_m = {radius_m:g} }}   # a stand-in'
+    bone = file.points[name] - file.points[parent]
+    lengths = np.linalg.norm(bone, axis=1)
+    ahead_m = PALM_SHARE * float(np.nanmedian(lengths)) if limb == "hand" else radius_m
+    where = _in_joint(file, name, bone)
+    if where is None or limb == "foot":
+        return ""
+    place = [round(ahead_m * each, 3) + 0.0 for each in where]
+    return f"{{ sphere = {radius_m:g}, position = {place} }}   # a stand-in"
+
+
 def _gaze(file: _File, name: str) -> tuple[float, float, float] | None:
     """Forwards in the frame of a skeleton's head, whose axes are the file's own."""
-    recording = file.recording
-    if not file.body or recording.up is not None:
+    if not file.body or file.recording.up is not None:
         return None
+    return _in_joint(file, name, forwards(rightwards(file.points, file.body)))
+
+
+def _in_joint(
+    file: _File, name: str, directions: Float[np.ndarray, "frames 3"]
+) -> tuple[float, float, float] | None:
+    """The mean of directions in the world as one in the frame of a skeleton's joint."""
+    recording = file.recording
     own = np.stack([each.positions for each in recording.bodies.values()])
     world = np.stack([file.points[each] for each in recording.bodies])
     turn, *_ = np.linalg.lstsq(
@@ -219,8 +247,9 @@ def _gaze(file: _File, name: str) -> tuple[float, float, float] | None:
         (own - own.mean(axis=(0, 1))).reshape(-1, 3),
         rcond=None,
     )
-    ahead = forwards(rightwards(file.points, file.body)) @ turn
-    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+    ahead = directions @ turn
+    with np.errstate(invalid="ignore"):
+        ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
     return mean_forward(recording.bodies[name].orientations, ahead)
 
 
@@ -372,6 +401,9 @@ def _body_tables(
         kind = "sensor" if body in sensors else "object"
         keys["file"] = quoted(body.file)
         yield from _table(kind, body.key, _gaze_line(body.gaze), shape, **keys)
+        if body in sensors and body.shape and of_limbs.get(body.name) == "head":
+            own = {**keys, "end_effector": "", "side": "", "tag": '"self"   # hands may touch it'}
+            yield from _table("object", body.key, shape, **own)
 
 
 def _floor_lines(ground: Floor, used: set[str]) -> list[str]:
