@@ -234,12 +234,15 @@ AMBIGUOUS = {"index", "middle", "ring", "little"}  # Words for fingers that name
 WHOLES = {"hand": ("hand", "wrist"), "foot": ("foot", "ankle")}
 """Words that name a hand or foot as a whole, and not a part of it."""
 
+_LIMB = r"(?=[A-Z]|hand|wrist|thumb|finger|elbow|arm|foot|ankle|toe|knee|leg|hip)"
+"""What may follow a first letter that tells a side: ``lFoot``, ``lfoot``."""
+
 _SIDES = {
     "right": re.compile(
-        r"right|(^|[_.\W])[rR]([_.\W]|$)|^r(?=[A-Z])|[a-z]Rt?$|^R(?=[A-Z_])|(?<=[a-z])R$|_r$"
+        rf"right|(^|[_.\W])[rR]([_.\W]|$)|^r{_LIMB}|[a-z]Rt?$|^R(?=[A-Z_])|(?<=[a-z])R$|_r$"
     ),
     "left": re.compile(
-        r"left|(^|[_.\W])[lL]([_.\W]|$)|^l(?=[A-Z])|[a-z]Lf?t?$|^L(?=[A-Z_])|(?<=[a-z])L$|_l$"
+        rf"left|(^|[_.\W])[lL]([_.\W]|$)|^l{_LIMB}|[a-z]Lf?t?$|^L(?=[A-Z_])|(?<=[a-z])L$|_l$"
     ),
 }
 
@@ -424,7 +427,7 @@ def _known(convention: Convention, spelled: Spelled) -> dict[str, BodyName]:
 def _place(bare: str) -> str:
     """The place that a name's words tell of; an empty string if none does."""
     bare = re.sub(r"\d+$", "", bare)
-    bare = re.sub(r"^([LRlr])(?=[A-Z][A-Za-z])", r"\1_", bare)
+    bare = re.sub(rf"^([LRlr])(?=[A-Z][A-Za-z]|(?![A-Z]){_LIMB})", r"\1_", bare)
     words = words_of(bare)
     pairs = {a + b for a, b in pairwise(words)}
     side = next((each for each in SIDES if each[0] in words), side_of(bare))

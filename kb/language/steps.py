@@ -144,8 +144,8 @@ class Narrator:
         """Whether motion of no object is worth a word: it has its own, or the limb handles nothing."""
         if segment.name == FREE:
             tags = {self._tags.get(name) for each in link.segments for name in each.objects}
-            moved = {word for word, _, _ in segment.prepositions} & {"up", "down"}
-            return link.kind == "hand" and bool(moved) and tags <= {"self", None}
+            whither = self._cases(segment, None) & {"rises", "sinks", "away", "toward"}
+            return link.kind == "hand" and bool(whither) and tags <= {"self"}
         return FREE in segment.general and not segment.objects
 
     def _end(self, purpose: str, said: set[str]) -> str:
@@ -234,6 +234,8 @@ class Narrator:
             "rises": ("up", segment.ee, segment.ee) in segment.prepositions,
             "sinks": ("down", segment.ee, segment.ee) in segment.prepositions,
         }
+        own = {word for word, _, other in segment.prepositions if self._tags.get(other) == "self"}
+        cases |= {"away": "away from" in own, "toward": "toward" in own}
         if len(segment.objects) > 1:
             pair = thing, other = segment.objects[:2]
             words = {word for word, body, at in segment.prepositions if (body, at) == pair}

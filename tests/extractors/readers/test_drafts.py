@@ -58,10 +58,10 @@ def test_a_scale_that_is_no_unit_is_drafted_as_a_number_to_look_at() -> None:
     assert EDIT in line
 
 
-def test_finger_joints_are_no_hands_and_joints_are_no_objects_but_the_floor_is_one() -> None:
+def test_finger_joints_are_no_hands_and_no_objects_but_head_and_floor_are() -> None:
     text = draft([person(1.0, 1)], Path(), "walk")
     assert text.count("[[sensor]]") == 3
-    assert text.count("[[object]]") == 1
+    assert text.count("[[object]]") == 2
     assert 'kind = "floor"' in text
     assert not [each for each in text.splitlines() if "Thumb" in each and each[0] != "#"]
 
