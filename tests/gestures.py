@@ -5,13 +5,13 @@ from functools import cache
 
 import numpy as np
 from jaxtyping import Float
+from scenes.people.virtual import Bend, Sway, both
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.performing import RELAXED
 from capar.body.scripts import SIDES, minimum_jerk
-from scenes.people.virtual import Bend, Sway, both
 
 Acts = Sequence[Bend | Sway]
 

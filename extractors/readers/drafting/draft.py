@@ -43,7 +43,9 @@ EDIT = "# EDIT:"
 FOOT_RADIUS_M = 0.03  # Radius of a foot's stand-in: half the thickness of a foot [m].
 HAND_RADIUS_M = 0.04
 HEAD_RADIUS_M = 0.1
-PALM_SHARE = 0.37  # How far ahead of the wrist a palm's middle is [share of the forearm] (Winter 2009).
+PALM_SHARE = (
+    0.37  # How far ahead of the wrist a palm's middle is [share of the forearm] (Winter 2009).
+)
 FLOOR_M = 0.02  # Thickness of a floor [m].
 WIDTH = 96  # Comments are no longer than this.
 
@@ -402,8 +404,8 @@ def _body_tables(
         keys["file"] = quoted(body.file)
         yield from _table(kind, body.key, _gaze_line(body.gaze), shape, **keys)
         if body in sensors and body.shape and of_limbs.get(body.name) == "head":
-            own = {**keys, "end_effector": "", "side": "", "tag": '"self"   # hands may touch it'}
-            yield from _table("object", body.key, shape, **own)
+            felt = {"name": keys["name"], "tag": '"self"   # hands may touch it'}
+            yield from _table("object", body.key, shape, **felt, file=keys["file"])
 
 
 def _floor_lines(ground: Floor, used: set[str]) -> list[str]:
