@@ -141,7 +141,7 @@ class Narrator:
         return [replace(step, purpose=ends.get(at, "")) for at, step in enumerate(steps)]
 
     def _gesture(self, segment: Segment, link: ObservedLink) -> bool:
-        """Whether motion of no object is worth a word: it has its own, or the limb handles nothing."""
+        """Whether motion of no object is said: it has a word, or the limb handles nothing."""
         if segment.name == FREE:
             tags = {self._tags.get(name) for each in link.segments for name in each.objects}
             whither = self._cases(segment, None) & {"rises", "sinks", "away", "toward"}
