@@ -4,7 +4,7 @@ import math
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from itertools import combinations
 from operator import attrgetter
@@ -305,12 +305,13 @@ class _Trial:
         def stays(hand: str, base: str, span: tuple[int, ...]) -> bool:
             return any(low <= span[0] and span[1] <= high for low, high in of_base(hand, base))
 
-        def taken_off(touch: Contact, ends: tuple[int, ...]) -> bool:
-            return any(
+        def steadied(touch: Contact, ends: tuple[int, ...]) -> bool:
+            base = whole[touch.second]
+            return stays(touch.first, base, ends) and any(
                 each.second == touch.second and _meet(each.interval, ends)
                 for hand in self.acting
-                for each in pairs.get((hand, whole[touch.second]), ())
-                if hand != touch.first and not stays(hand, whole[touch.second], ends)
+                for each in pairs.get((hand, base), ())
+                if hand != touch.first and not stays(hand, base, ends)
             )
 
         for (first, second), found in list(pairs.items()):
@@ -330,9 +331,17 @@ class _Trial:
                 for each in found:
                     if each in own or not _meet(each.interval, span):
                         continue
-                    steadies = has_both and first in self.acting
-                    if not (steadies and all(taken_off(each, ends) for ends in worked)):
+                    if first not in self.acting or not any(
+                        _meet(base, span) for base in of_base(first, second)
+                    ):
                         yield each
+                        continue
+                    own_work = [ends for ends in worked if not steadied(each, ends)]
+                    if own_work:
+                        # Before, it steadied the thing, if somebody else worked the part.
+                        late = own_work != worked
+                        begin = max(each.interval[0], min(own_work)[0] if late else 0)
+                        yield replace(each, interval=(begin, each.interval[1]))
 
     def motions(self, touches: Iterable[Contact]) -> Iterator[Fact]:
         """When each object moves, by its floor, and when that truly began and ended."""
