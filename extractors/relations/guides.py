@@ -265,16 +265,21 @@ def parts(
         for other in stated or capture.objects:
             larger = (_volume(one), other.name) < (_volume(other), one.name)
             may = {one.name, other.name} <= set(free) and larger
+            may = may or (other.tag is TagType.FIXED and one.name in free)
             if stated or (may and _stays_near(body, objects[other.name], thresholds)):
                 part = _part(one, body, objects[other.name], thresholds, stated=bool(stated))
                 best = found.get(one.name)
-                if stated or (part.guide and (best is None or _residual(part) < _residual(best))):
+                if stated or (part.guide and (best is None or _apart(part) < _apart(best))):
                     found[one.name] = part
     return found
 
 
-def _residual(part: Part) -> float:
-    return part.guide.fit.residual_m if part.guide else np.inf
+def _apart(part: Part) -> float:
+    """How far a part's hinge is from its base, along its length [m]; without one, the farthest."""
+    if part.guide is None or part.base.planes is None:
+        return np.inf
+    line = _hinge_line(part.body, part.guide.fit, part.guide.closed)
+    return float(np.maximum(_outside(line, part.base, part.guide.closed), 0.0).mean())
 
 
 def _volume(each: TagObject) -> float:
@@ -364,22 +369,25 @@ def _joined(
     """Whether bodies hold together on a guide, and none merely is pushed or tips on the other.
 
     On a rail the base is on both sides of the part. What turns about its own edge, and comes to lie
-    on the other, may be tipped, unless the other is leant in the recording, too.
+    on the other, may be tipped, unless the other is leant in the recording, too. What turns about
+    a line through its middle may stand on what is fixed, and what goes straight may be pushed.
     """
     if base.planes is None or body.planes is None:
         return False
+    stands = other.poses.rests
     if fit.kind == RAIL:
         deeper = max(ends, key=lambda end: inside_share(body, base, end))
-        inside = inside_share(body, base, deeper) > 0.0
+        inside = not stands and inside_share(body, base, deeper) > 0.0
         return inside and _confined(body, base, fit.axis, deeper, thresholds)
-    line = _hinge_line(body, fit, ends[0])
-    if max(_outside(line, each, ends[0]).min() for each in (body, base)) > thresholds.hinge_near_m:
+    line, own_edge = _hinge_line(body, fit, ends[0]), _at_own_edge(body, fit, ends[0], thresholds)
+    gaps = (np.maximum(_outside(line, each, ends[0]), 0.0).mean() for each in (body, base))
+    if max(gaps) > thresholds.hinge_near_m or (stands and not own_edge):
         return False
     shares = [
         _closed_share(body, base, fit, end, outward, thresholds)
         for end, outward in zip(ends, (-1.0, 1.0), strict=True)
     ]
-    if max(shares) < thresholds.closed_share or not _at_own_edge(body, fit, ends[0], thresholds):
+    if max(shares) < thresholds.closed_share or not own_edge:
         return True
     up = other.turns_at(slice(None)) @ other.turn(int(np.argmin(other.poses.lost))).T @ UP
     return bool((up[:, 2] < np.cos(thresholds.lean_rad)).any())
