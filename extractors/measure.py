@@ -67,8 +67,8 @@ from extractors.contact.normals import contact_normal
 from extractors.contact.touch_distances import forget_touchable, touching_part
 from extractors.faults.faults import faults
 from extractors.motion.impacts import closing_speed, falls, release_speed
-from extractors.motion.motion_edges import motion_edges
-from extractors.motion.object_motion import Floor, RestPose, moving, rest_poses, resting
+from extractors.motion.motion_edges import motion_edges, standstills, true_rests
+from extractors.motion.object_motion import Floor, RestPose, moving
 from extractors.motion.phases import (
     leaning,
     lengthwise,
@@ -234,7 +234,7 @@ class _Trial:
 
     def rests(self, name: str) -> tuple[RestPose, ...]:
         """The places where an object rests."""
-        return rest_poses(self.moved_poses(name), self.floor(name), self.limits)
+        return standstills(self.moved_poses(name), self.floor(name), self.limits)
 
     def spans(self, holds: Holds, one: BodyGeometry) -> list[Interval]:
         """The intervals in which something holds of a body, as those of contacts are made."""
@@ -381,7 +381,7 @@ class _Trial:
         mobile = [name for name in self.mobile if name in held]
         out: list[Fact] = []
         for name, hand in self.acting.items():
-            out += (Resting(name, *rest) for rest in resting(hand.poses, limits))
+            out += (Resting(name, *rest) for rest in true_rests(hand.poses, limits))
         for name in mobile:
             out += self._course(things[name], known, self.guides.get(name))
         out += seated(things, self.acting, touches, known, limits)
@@ -422,8 +422,7 @@ class _Trial:
             turns = turns_on_guide(guide, displaced, limits)
             yield Guided(name, guide.kind, guide.base)
         swinging = swings(one.poses, moves, limits)
-        length_m = float(one.shape.size.max()) if one.shape else 0.0
-        leans = leaning(one.poses, self.upright(name), limits, length_m=length_m)
+        leans = leaning(one, self.upright(name), limits)
         yield from (Reverses(name, frame) for frame in turns)
         yield from (DrawsBack(name, f) for f in level_turns(one.middles, displaced, limits))
         yield from (Swings(name, *span) for span in swinging)

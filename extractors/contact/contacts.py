@@ -218,15 +218,20 @@ def counted_meetings(
     """Whether each contact counts: one of two hands of an agent does not always.
 
     It does not while either touches a mobile object, and it is not that of a hand that rests when
-    the other one comes to it.
+    the other one comes to it. Nor does one with something fixed over which the hand only passes.
 
     ``meetings``: contacts: who touches what, and when.
     """
     known = list(meetings)
     hands = {each.name: each for each in capture.acting if each.end_effector == HAND}
     mobile = {each.name for each in capture.objects if each.tag is TagType.MOBILE}
+    fixed = {each.name for each in capture.objects if each.tag is TagType.FIXED}
     held = [(one, span) for one, other, span in known if one in hands and other in mobile]
     for one, other, span in known:
+        if one in hands and other in fixed:
+            busy = [its for name, its in held if name == one]
+            yield not _passes_over(bodies.sensors[one], span, busy, thresholds)
+            continue
         own = one in hands and other in hands
         if not own or capture.agent_of(hands[one]) != capture.agent_of(hands[other]):
             yield True
@@ -238,6 +243,41 @@ def counted_meetings(
         else:
             waits = _rests(bodies, one, span[0], thresholds)
             yield not (waits and not _rests(bodies, other, span[0], thresholds))
+
+
+def _passes_over(
+    hand: BodyGeometry, span: Interval, busy: Sequence[Interval], thresholds: Thresholds
+) -> bool:
+    """Whether a hand touches something fixed by the way, as it goes to a thing or leaves one.
+
+    While it touches no mobile object it neither halts there nor turns back, and soon is off again.
+
+    ``span``: the contact. ``busy``: when it touches mobile objects.
+    """
+    times = hand.poses.smooth.times
+    alone = mask([span], len(times)) & ~mask(busy, len(times))
+    still = mask(resting(hand.poses, thresholds), len(times))
+    for first, last in geometry.runs(alone):
+        whole = (first, last) == span
+        if first == 0 or last == len(times) - 1:
+            return False
+        if duration((first, last), times, float(times[1] - times[0])) >= thresholds.brushing_s:
+            return False
+        stands = still[first : last + 1].sum() / frame_rate(times)
+        if stands >= thresholds.rest_minimum_s or (whole and not _keeps_on(hand, span, thresholds)):
+            return False
+    return True
+
+
+def _keeps_on(hand: BodyGeometry, span: Interval, thresholds: Thresholds) -> bool:
+    """Whether a hand goes on through a contact faster than it strokes, not to and fro."""
+    way = hand.middles[span[0] : span[1] + 1]
+    gone_m = float(np.linalg.norm(way[-1] - way[0]))
+    length_m = np.linalg.norm(np.diff(way, axis=0), axis=1).sum()
+    last_s = float(np.ptp(hand.poses.smooth.times[list(span)]))
+    return bool(
+        gone_m >= thresholds.passing_share * length_m and gone_m >= thresholds.passing_mps * last_s
+    )
 
 
 def _rests(bodies: Bodies, hand: str, frame: int, thresholds: Thresholds) -> bool:

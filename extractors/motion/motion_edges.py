@@ -1,7 +1,7 @@
 """True edges of motion: when a body set off and came to rest, and where it was seated."""
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -12,9 +12,17 @@ from capar.model.capture import Stream
 from capar.model.geometry import Quaternion, Series, Vector
 from extractors.bodies.bodies import BodyGeometry
 from extractors.bodies.poses import Poses, median_pose, rotation_matrices
-from extractors.motion.object_motion import Floor, RestPose, rests_at
+from extractors.motion.object_motion import (
+    Floor,
+    RestPose,
+    motion_floor,
+    moving,
+    rest_poses,
+    resting,
+    rests_at,
+)
 from extractors.signals.filters import gains
-from extractors.signals.intervals import Interval, first_where, frame_rate, last_where
+from extractors.signals.intervals import Interval, first_where, frame_rate, last_where, mask
 from extractors.thresholds import Thresholds
 
 Ways = Series
@@ -330,13 +338,61 @@ def motion_edges(
     before = [each for each in rests if each.interval[0] < moved[0]]
     after = [each for each in rests if each.interval[1] > moved[1]]
     first, last = moved
+    creeps = round(thresholds.creep_s * frame_rate(poses.filled.times))
     if before:
         first = _edge(poses, before[-1], moved, 1, floor, thresholds, partners)
+        grows = _well_beyond(poses, before[-1], moved, floor, floor) - moved[0]
+        first = min(max(first, moved[0] - max(creeps, grows)), moved[0])
     if after:
         last = _edge(poses, after[0].at_first, moved, -1, floor, thresholds, partners)
-    creeps = round(thresholds.creep_s * frame_rate(poses.filled.times))
-    first, last = max(first, moved[0] - creeps), min(last, moved[1] + creeps)
-    return min(first, moved[0]), max(last, moved[1])
+        grows = moved[1] - _well_beyond(poses, after[0], moved[::-1], floor, floor)
+        last = max(min(last, moved[1] + max(creeps, grows)), moved[1])
+    return first, last
+
+
+def true_rests(poses: Poses, thresholds: Thresholds) -> list[Interval]:
+    """Closed intervals in which a body is slow at a place of rest, from about when it settled.
+
+    What sets off slowly is slow for long: it is at rest for at most as long after it has set off as
+    a motion usually takes until it is seen, and likewise before it has settled.
+    """
+    rate_hz = frame_rate(poses.filled.times)
+    floor = motion_floor(poses.noise, rate_hz, own_m=None, thresholds=thresholds)
+    rests = standstills(poses, floor, thresholds)
+    least, unseen = (
+        round(each * rate_hz) for each in (thresholds.moving_minimum_s, thresholds.onset_s)
+    )
+    away = np.zeros(len(poses.smooth.times), dtype=bool)
+    for moved in moving(poses, rests, floor, thresholds):
+        if moved[1] - moved[0] >= least:
+            first, last = motion_edges(poses, moved, rests, floor, thresholds)
+            away[min(first + unseen, moved[0]) : max(last - unseen, moved[1]) + 1] = True
+    there = mask([each.interval for each in rests], len(away)) & ~away
+    return geometry.runs(there & mask(resting(poses, thresholds), len(away)))
+
+
+STEADY = 1.0 / 3.0
+"""Who crosses a place on a slow way goes at least this share of his mean pace throughout [1]."""
+
+
+def standstills(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[RestPose, ...]:
+    """The places where a body rests, less those that it crosses steadily on a slow way."""
+    found: list[RestPose] = []
+    for stay in rest_poses(poses, floor, thresholds):
+        frames = np.linspace(*stay.interval, 5).round().astype(int)
+        stream, first = poses.smooth, frames[0]
+        start = replace(
+            stay, position=stream.positions[first], orientation=stream.orientations[first]
+        )
+        steps = np.diff(growth(poses, frames, start, floor))
+        crosses = steps.sum() >= CROSSES and steps.min() >= STEADY * steps.mean()
+        if not crosses:
+            found.append(stay)
+    return tuple(found)
+
+
+CROSSES = 1.5
+"""Displacement across a place from end to end [floors of motion]: at most two, its diameter."""
 
 
 def _edge(
@@ -377,7 +433,9 @@ def _nudged(
     thresholds: Thresholds,
 ) -> RestPose | None:
     """Where an object stood beside its place of rest, next to its motion; None if it did not."""
-    window = max(1, round(thresholds.rest_minimum_s * frame_rate(poses.filled.times)))
+    # Noise hides that it creeps on, the longer the larger it is.
+    least_s = thresholds.rest_minimum_s * near.position_m / thresholds.edge_m
+    window = max(1, round(least_s * frame_rate(poses.filled.times)))
     grows = growth(poses, frames, stay, near)
     with np.errstate(invalid="ignore"):
         stands = np.flatnonzero(grows[:-window] <= grows[window:])
@@ -410,10 +468,11 @@ def _onset(
 ) -> int:
     """The frame at which a motion out of a place truly began, or one into it truly ended."""
     near, rate_hz = hair(poses, thresholds), frame_rate(poses.filled.times)
-    most, rest = longest(poses, near, thresholds), round(thresholds.rest_minimum_s * rate_hz)
+    rest = round(thresholds.rest_minimum_s * rate_hz)
     edge, start = motion[0], stay.interval[0 if step > 0 else 1]
-    seen = max(min(step * (edge - start), most + rest), 0)
     far = _well_beyond(poses, stay, motion, near, floor)
+    most = max(longest(poses, near, thresholds), step * (far - edge))
+    seen = max(min(step * (edge - start), most + rest), 0)
     frames = np.arange(edge - step * seen, far + step, step)
     if len(frames) <= seen + 1:
         return edge

@@ -252,6 +252,10 @@ def _stay(streams: tuple[Stream, Stream], seed: Interval, floor: Floor, begins: 
     middle = first + int(inside[np.argmin(np.abs(inside - centre))] if inside.size else centre)
     before, after = last_where(gone, middle - 1), first_where(gone, middle + 1, len(stream.times))
     end = len(stream.times) - 1 if after is None else after - 1
+    if end < last:
+        # It creeps away from there: the poses beyond are of no place of rest.
+        begin = first if before is None else max(first, before + 1)
+        stay = RestPose(seed, *median_pose(stream, slice(begin, end + 1)), end + 1 - begin)
     if before is not None and before >= first:
         return replace(stay, interval=(before + 1, end))
     soon = min(first + begins, last + 1)

@@ -223,9 +223,7 @@ def angular_velocity(orientations: Turns, times: Series) -> Places:
     return np.asarray(out)
 
 
-def leaning(
-    poses: Poses, upright: Vector, thresholds: Thresholds, *, length_m: float = 0.0
-) -> tuple[Interval, ...]:
+def leaning(body: BodyGeometry, upright: Vector, thresholds: Thresholds) -> tuple[Interval, ...]:
     """Closed intervals of frames in which an object leans, from when it began to lean over.
 
     It leans while its axis is far from the vertical. The interval also covers the tipping over
@@ -233,17 +231,16 @@ def leaning(
     rather than travels: its middle goes no farther meanwhile than its turning moves one end about
     the other.
 
-    ``upright``: the axis that points up while it stands, in its own frame. ``length_m``: the
-    object's greatest length [m]; a point's turning moves nothing.
+    ``upright``: the axis that points up while it stands, in its own frame.
     """
-    stream = poses.smooth
+    stream = body.poses.smooth
     angle = lean(stream.orientations, upright)
     pace = derivative(angle, stream.times)
-    speed = np.linalg.norm(derivative(stream.positions, stream.times), axis=1)
+    speed = np.linalg.norm(derivative(body.middles, stream.times), axis=1)
     with np.errstate(invalid="ignore"):
         far = angle > thresholds.lean_rad
         over, back = pace >= thresholds.rest_speed_radps, pace <= -thresholds.rest_speed_radps
-    reach = np.abs(pace) * length_m
+    reach = np.abs(pace) * (float(body.shape.size.max()) if body.shape else 0.0)
     lapse = round(thresholds.dropout_s * frame_rate(stream.times))
     found: list[Interval] = []
     for first, last in intervals(

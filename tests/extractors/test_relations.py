@@ -170,8 +170,8 @@ def test_what_is_lost_for_a_while_swings_before_and_after() -> None:
 def leant(angle: np.ndarray, *, speed_mps: float = 0.0) -> tuple[int, int]:
     """When a body leans that is tipped by these angles as it travels."""
     way = np.outer(TIMES * speed_mps, [1.0, 0.0, 0.0])
-    where = body(way, turns=Rotation.from_euler("y", angle[:, None])).poses
-    ((first, last),) = leaning(where, np.array([0.0, 0.0, 1.0]), LIMITS, length_m=0.2)
+    where = body(way, turns=Rotation.from_euler("y", angle[:, None]))
+    ((first, last),) = leaning(where, np.array([0.0, 0.0, 1.0]), LIMITS)
     return first, last
 
 
