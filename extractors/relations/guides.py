@@ -314,7 +314,11 @@ def _part(
     if told and closed is None and fit.kind == RAIL:
         side = np.cross(fit.axis, UP)
         ways = (each / np.linalg.norm(each) for each in (side, -side, -UP) if each.any())
-        covers = (_covering(moved, base, fit, ends, way, still, thresholds) for way in ways)
+        covers = [
+            _covering(moved, base, fit, ends, way, still, thresholds)
+            for way in ways
+            if stated or not _overhangs(moved, base, np.cross(fit.axis, way), thresholds)
+        ]
         closed = max((each for each in covers if each), key=lambda each: each[1], default=None)
     found = stated or closed is not None
     if not found and not _joined(moved, other, base, fit, ends, thresholds):
@@ -328,6 +332,14 @@ def _part(
     near, far = int(np.nanargmin(away)), int(np.nanargmax(away))
     guide = Guide(fit, base.name, near, far, still, known=at is not None, stated=at)
     return Part(base, moved, floor, guide)
+
+
+def _overhangs(
+    body: BodyGeometry, base: BodyGeometry, across: Vector, thresholds: Thresholds
+) -> bool:
+    """Whether a body is wider than another: it may lie on that, and cannot run in it."""
+    wide, wider = (float(np.ptp(each.corners @ each.turn(0).T @ across)) for each in (base, body))
+    return wider > wide + thresholds.edge_m
 
 
 def _steady(fit: GuideFit, thresholds: Thresholds) -> bool:
@@ -377,7 +389,7 @@ def _joined(
     stands = other.poses.rests
     if fit.kind == RAIL:
         deeper = max(ends, key=lambda end: inside_share(body, base, end))
-        inside = not stands and inside_share(body, base, deeper) > 0.0
+        inside = not stands and inside_share(body, base, deeper) >= thresholds.inside_share
         return inside and _confined(body, base, fit.axis, deeper, thresholds)
     line, own_edge = _hinge_line(body, fit, ends[0]), _at_own_edge(body, fit, ends[0], thresholds)
     gaps = (np.maximum(_outside(line, each, ends[0]), 0.0).mean() for each in (body, base))
