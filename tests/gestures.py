@@ -118,3 +118,11 @@ def push() -> list[Bend]:
     up = [*both("shoulder_flexion", 0.8, 1.7, -20.0), *both("elbow_flexion", 0.8, 1.7, 110.0)]
     out = [*both("shoulder_flexion", 2.2, 2.7, 85.0), *both("elbow_flexion", 2.2, 2.7, -95.0)]
     return [*up, *out, *undone([*up, *out], 3.3, 4.3)]
+
+
+def touch_head(side: str) -> list[Bend]:
+    """A hand is laid on the side of the head, stays, and comes down; of a woman."""
+    turns = {"shoulder_flexion": 141.0, "shoulder_abduction": 26.0, "shoulder_rotation": 34.5,
+             "elbow_flexion": 94.5, "wrist_flexion": 44.5}  # fmt: skip
+    up = [Bend(f"{side}_{joint}", 0.8, 2.0, turn) for joint, turn in turns.items()]
+    return [*up, *undone(up, 3.0, 4.2)]

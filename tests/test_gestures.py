@@ -113,6 +113,15 @@ def test_hands_that_push_at_nothing_are_stretched_out(tmp_path: Path) -> None:
     assert "raised both hands, stretched them out, and lowered them" in describe(found)
 
 
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_hand_at_the_own_head_touches_it(tmp_path: Path, side: str) -> None:
+    found = seen(tmp_path, "woman", gestures.touch_head(side), 60.0)
+    reached, *others = steps(found, f"{side}_hand")
+    assert reached in {"Reach", "Salute"}
+    assert others == ["TouchOneself", "ResumePosture"]
+    assert "touched the head" in describe(found)
+
+
 @pytest.mark.parametrize("names", SKELETONS.values(), ids=SKELETONS)
 def test_limbs_are_called_left_and_right_whatever_a_file_calls_them(
     tmp_path: Path, names: dict[str, str]

@@ -144,7 +144,7 @@ class _Writer:
                 text = text.replace(
                     f"{{{place}}}", "it" if it else the(self._nouns.get(name, name))
                 )
-            if step.objects:
+            if step.objects and step.objects[0] in {topic, *said}:
                 topic, clear = step.objects[0], not self._movable.intersection(said[1:])
             text += f" {times(step.count)}" if step.count > 1 else ""
             text += f" to {step.purpose}" if step.purpose else ""
