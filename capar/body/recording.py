@@ -221,6 +221,8 @@ def _toml(capture: Capture) -> list[str]:
         out += [f'shape = {{ mesh = "{thing.name}.obj" }}'] * (thing.shape is not None)
         out += [f"mass_kg = {thing.mass_kg}"] * (thing.mass_kg is not None)
         out += [f'part_of = "{thing.part_of}"'] * bool(thing.part_of)
+        closed = {"closed_deg": thing.closed_deg, "closed_m": thing.closed_m}
+        out += [f"{key} = {value}" for key, value in closed.items() if value is not None]
     return out
 
 
