@@ -49,9 +49,9 @@ WORDS = {
     "intended_action": ("Reach", "MoveObjTo", "any"),
     "intended_purpose": ("PickUp", "Touch"),
     "phase_kind": ("rising", "level", "sinking", "turning", "still"),
-    "guided_kind": ("hinge", "rail"),
+    "guided_kind": ("hinge", "rail", "pivot", "track"),
     "bears_share": ("whole", "part", "none"),
-    "lies_how": ("inside", "dips", "above", "below", "beside", "along", "near", "shifts"),
+    "lies_how": ("inside", "dips", "above", "below", "beside", "along", "near", "shifts", "by_part"),
     "passage_how": ("inside", "above"),
     "passage_sides": ("opposite", "other"),
 }  # fmt: skip
