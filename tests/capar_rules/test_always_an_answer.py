@@ -51,7 +51,8 @@ WORDS = {
     "phase_kind": ("rising", "level", "sinking", "turning", "still"),
     "guided_kind": ("hinge", "rail", "pivot", "track"),
     "bears_share": ("whole", "part", "none"),
-    "lies_how": ("inside", "dips", "above", "below", "beside", "along", "near", "shifts", "by_part"),
+    "lies_how": ("inside", "dips", "above", "below", "beside", "along", "near", "shifts",
+        "by_part"),
     "passage_how": ("inside", "above"),
     "passage_sides": ("opposite", "other"),
 }  # fmt: skip
