@@ -275,6 +275,12 @@ def source_of(
             hands[side] = HandTrack(sensor.name, side, frame, path * frame.pose)
     by_side = {side: (hand.sensor, hand.path) for side, hand in hands.items()}
     displaced = [fact for fact in observation.facts if isinstance(fact, Displaced)]
+    for guide in observation.guides:
+        if any(fact.object == guide.base for fact in displaced):
+            raise PlanError(
+                f"{guide.object!r} is a part of {guide.base!r}, which moves as well; only parts on "
+                "bases that stay where they are can be regenerated"
+            )
     holds = holds_of(by_side, paths, touching)
     holds = with_touches(holds, by_side, touching, displaced, capture.times)
     sides = {hand.sensor: side for side, hand in hands.items()}
