@@ -103,7 +103,7 @@ def pour(performer: Performer, **options: Unpack[Options]) -> Trial:
         Leg((-0.3, 0.0, 0.0)),
         DOWN,
     )
-    steps = (*LIFTED, "Carry", "Touch", "Pour", "Touch", "Pour", "Touch", "Carry", *LOWERED)
+    steps = (*LIFTED, "Carry", "Touch", "Pour", "Touch", "Tilt", "Touch", "Carry", *LOWERED)
     return handle(performer, "pour", legs, steps, stage, **options)
 
 
