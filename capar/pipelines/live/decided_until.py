@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
-from capar.model.facts import Displaced, Leans, Moving, Swings, Touching
+from capar.model.facts import Displaced, Leans, Moving, Resting, Swings, Touching
 from extractors.measure import Arriving
 
 
@@ -31,6 +31,8 @@ class Handling:
         fast: Contacts that began as fast as a blow: end-effector, object, first frame.
         laid: Contacts of objects that can be moved with what is fixed.
         limbs: What limb an end-effector is of, where it is of one.
+        rested: Rests of end-effectors.
+        departs: For how many frames after a rest later ones may tell when it truly ended.
     """
 
     touching: Sequence[Touching]
@@ -50,14 +52,21 @@ class Handling:
     fast: AbstractSet[tuple[str, str, int]] = frozenset()
     laid: Sequence[Touching] = ()
     limbs: Mapping[str, object] = field(default_factory=dict)
+    rested: Sequence[Resting] = ()
+    departs: int = 0
 
     @property
     def sure(self) -> int:
         """The last frame before which no contact ends that may yet go on, and no motion."""
         lost = (since for since in self.lost.values() if since > self.last - self.longest)
         stops = (rest.first - self.margin for rest in self.arriving.values())
-        open_ = (*lost, *self.lingering.values(), *stops)
+        left = (stay.last for stay in self.just_left())
+        open_ = (*lost, *self.lingering.values(), *stops, *left)
         return min((since - 1 for since in open_), default=self.last)
+
+    def just_left(self) -> list[Resting]:
+        """The rests of which later frames may yet tell when they truly ended."""
+        return [s for s in self.rested if self.last - self.departs <= s.last < self.last]
 
     def with_margin(self, since: Mapping[str, int]) -> dict[str, int]:
         """Frames so much earlier that no event of those at them is before."""
@@ -109,6 +118,7 @@ def undecided(handling: Handling) -> dict[str, int]:
             *_swinging(handling),
             *_lingering(handling),
             *_just_moving(handling),
+            *((stay.ee, stay.last - handling.margin) for stay in handling.just_left()),
             *_arriving(handling, handling.arriving),
         )
     )
@@ -135,6 +145,8 @@ def decided_at(handling: Handling) -> Iterator[int]:
         yield swing.last + handling.stroke + 1
     for move in handling.moving:
         yield move.first + handling.fresh + 1
+    for stay in handling.rested:
+        yield stay.last + handling.departs + 1
     for rest in handling.arriving.values():
         yield handling.last + rest.missing
 

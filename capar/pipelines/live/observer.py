@@ -54,6 +54,7 @@ LASTS_S = 0.1  # How much later than a rule asks for something is taken to have 
 FRESH_S = 0.2  # A motion that has just begun may turn out to be none: a glitch, or the filter's.
 NEAR_S = 0.9  # It is awaited whether bodies touch again that have stayed near each other.
 WINDOW_S = 4.0  # Least length of the window.
+DEPARTS_S = 1.5  # When a rest truly ended is told by how the motion after it grows.
 MOTION_S = 10.0  # It reaches back to the beginning of motions that go on, to so long ago at most.
 REST_S = 30.0  # The place of a resting body is the median of so much of its rest.
 HANDING_S = 2.0  # While two end-effectors hold one object, it is awaited who lets go of it.
@@ -258,6 +259,8 @@ class LiveObserver:
                 if isinstance(fact, ClosingSpeed) and fact.speed >= times().blow_mm_s
             },
             laid=[fact for fact in facts if isinstance(fact, Touching) and fact.other in fixed],
+            rested=[fact for fact in facts if isinstance(fact, Resting)],
+            departs=self._frames(DEPARTS_S),
             limbs={
                 sensor.name: (rig.agent_of(sensor), sensor.side)
                 for sensor in rig.acting
