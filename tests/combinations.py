@@ -26,3 +26,13 @@ def meeting(
         for (i, act), (j, performer), (k, (name, options)) in numbered
         if EVERY or (i + j) % len(recorded) == k
     ]
+
+
+def in_turn(recorded: Sequence[tuple[Any, ...]], cases: Sequence[tuple[Any, ...]]) -> list[Any]:
+    """Each case as it is recorded in one way, which take turns; each in all, if so asked."""
+    return [
+        (*one, *case)
+        for i, case in enumerate(cases)
+        for j, one in enumerate(recorded)
+        if EVERY or (i + j) % len(recorded) == 0
+    ]

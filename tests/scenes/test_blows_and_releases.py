@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from combinations import in_turn
 from scipy.spatial.transform import Rotation
 
 import capar
@@ -210,8 +211,9 @@ SCENES: dict[str, Write] = {
 """Each kind by a right and a left hand, and by things of different sizes."""
 
 
-@pytest.mark.parametrize(("rate_hz", "noise_m"), TRACKERS)
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    ("rate_hz", "noise_m", "name"), in_turn(TRACKERS, [(name,) for name in SCENES])
+)
 def test_a_blow_a_release_and_a_pull_are_named(name: str, rate_hz: float, noise_m: float) -> None:
     stage = Stage(name.replace(" ", "_"))
     SCENES[name](stage)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from combinations import in_turn
 from scipy.interpolate import CubicHermiteSpline
 
 from scenes.hands import shapes
@@ -34,13 +35,16 @@ def right(write, rate_hz: float, noise_mm: float, border_s: float = 0.1) -> None
     )
 
 
-RATES = pytest.mark.parametrize(
-    ("rate_hz", "noise_mm"), [(30.0, 0.5), (60.0, 1.5), (120.0, 0.5), (120.0, 1.5)]
-)
+TRACKERS = [(30.0, 0.5), (60.0, 1.5), (120.0, 0.5), (120.0, 1.5)]
+"""Rates [Hz] and noises [mm]."""
 
 
-@pytest.mark.parametrize(("side", "duration", "far"), [("right", 8.0, 0.0), ("left", 6.0, 0.12)])
-@RATES
+def varied(names: tuple[str, ...], cases: list[tuple[object, ...]]) -> pytest.MarkDecorator:
+    """Cases, each with a rate and a noise."""
+    return pytest.mark.parametrize(("rate_hz", "noise_mm", *names), in_turn(TRACKERS, cases))
+
+
+@varied(("side", "duration", "far"), [("right", 8.0, 0.0), ("left", 6.0, 0.12)])
 def test_slow_reach_is_one_step(rate_hz, noise_mm, side, duration, far) -> None:
     def scene(s: Stage) -> None:
         sign = outward(side)
@@ -56,10 +60,9 @@ def test_slow_reach_is_one_step(rate_hz, noise_mm, side, duration, far) -> None:
     right(scene, rate_hz, noise_mm, 0.5 if noise_mm < 1.0 else 1.3)
 
 
-@pytest.mark.parametrize(
+@varied(
     ("side", "duration", "way"), [("right", 15.0, 0.5), ("left", 11.0, 0.28), ("right", 20.0, 0.8)]
 )
-@RATES
 def test_slow_carry_is_one_step(rate_hz, noise_mm, side, duration, way) -> None:
     def scene(s: Stage) -> None:
         sign = outward(side)
@@ -74,7 +77,7 @@ def test_slow_carry_is_one_step(rate_hz, noise_mm, side, duration, way) -> None:
     right(scene, rate_hz, noise_mm, 0.05 * duration)
 
 
-@pytest.mark.parametrize(
+@varied(
     ("side", "tilt_deg", "tip_s", "stay_s", "back_s"),
     [
         ("right", 100.0, 0.9, 1.2, 0.9),
@@ -82,7 +85,6 @@ def test_slow_carry_is_one_step(rate_hz, noise_mm, side, duration, way) -> None:
         ("right", 120.0, 1.6, 2.5, 0.8),
     ],
 )
-@RATES
 def test_righting_after_pouring_is_no_pour(
     rate_hz, noise_mm, side, tilt_deg, tip_s, stay_s, back_s
 ) -> None:
@@ -108,7 +110,7 @@ def test_righting_after_pouring_is_no_pour(
     right(scene, rate_hz, noise_mm)
 
 
-@pytest.mark.parametrize(
+@varied(
     ("side", "up", "aside", "times", "halt"),
     [
         ("right", 0.03, 0.2, (0.8, 1.4, 0.8), 0.0),
@@ -117,7 +119,6 @@ def test_righting_after_pouring_is_no_pour(
         ("left", 0.03, 0.25, (0.4, 0.7, 0.4), None),
     ],
 )
-@RATES
 def test_low_hop_is_one_step(rate_hz, noise_mm, side, up, aside, times, halt) -> None:
     """A cup goes up a little, aside and down again, with brief halts between or in one sweep."""
 
@@ -141,11 +142,10 @@ def test_low_hop_is_one_step(rate_hz, noise_mm, side, up, aside, times, halt) ->
     right(scene, rate_hz, noise_mm)
 
 
-@pytest.mark.parametrize(
+@varied(
     ("side", "gap", "way", "low_s"),
     [("right", 0.003, 0.1, 0.25), ("left", 0.002, 0.14, 0.3), ("right", 0.004, 0.12, 0.2)],
 )
-@RATES
 def test_way_low_over_a_table_is_no_reach(rate_hz, noise_mm, side, gap, way, low_s) -> None:
     """From one thing to the next the hand goes so near over the table that it might touch it."""
 
@@ -170,11 +170,10 @@ def test_way_low_over_a_table_is_no_reach(rate_hz, noise_mm, side, gap, way, low
     assert not any("table" in step for step in found.found), report([found])
 
 
-@pytest.mark.parametrize(
+@varied(
     ("side", "over", "hold", "size"),
     [("right", 0.0025, 0.0, 0.07), ("left", 0.001, 0.3, 0.06), ("right", 0.004, 0.5, 0.055)],
 )
-@RATES
 def test_hand_that_brushes_the_table_reaches_the_thing(
     rate_hz, noise_mm, side, over, hold, size
 ) -> None:
@@ -205,7 +204,7 @@ def sweep(hand: Hand, places: list, times: list[float]) -> None:
     hand.clock += knots[-1]
 
 
-@pytest.mark.parametrize(
+@varied(
     ("before", "side", "wait", "going", "up_mps"),
     [
         ("gets ready", "left", 1.3, 0.5, 1.6),
@@ -215,7 +214,6 @@ def sweep(hand: Hand, places: list, times: list[float]) -> None:
         ("stays", "left", 1.4, 0.3, 2.2),
     ],
 )
-@RATES
 def test_catch_begins_with_the_hand(rate_hz, noise_mm, before, side, wait, going, up_mps) -> None:
     """The other hand tosses a bag; whatever this one did before is no part of the catch."""
 
