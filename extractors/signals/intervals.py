@@ -1,6 +1,6 @@
 """Closed intervals of frames, and seconds as frames."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from weakref import ref
 
 import numpy as np
@@ -64,7 +64,7 @@ def duration(interval: Interval, times: Series, step: float) -> float:
     return float(times[interval[1]] - times[interval[0]]) + step
 
 
-def mask(found: list[Interval], frames: int) -> Holds:
+def mask(found: Sequence[Interval], frames: int) -> Holds:
     """Whether each frame lies in one of the intervals."""
     out = np.zeros(frames, dtype=bool)
     for first, last in found:
