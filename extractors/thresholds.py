@@ -79,6 +79,7 @@ class Thresholds:
     passing_s: float = 0.15  # what passes by may touch for less than this
     passing_mps: float = 0.3  # ... if it is at least so fast
     passing_share: float = 0.5  # ... and keeps at least this share of its velocity
+    passing_by_s: float = 1.0  # who goes by on the way to a thing, or from one, is there by then
     brushing_s: float = 1.0  # who touches something fixed for longer does not merely pass over it
     tolerance_sigmas: float = 3.0  # bodies touch within so many deviations of noise
     tolerance_least_m: float = 0.005  # ... and at least this: skin gives way, meshes approximate

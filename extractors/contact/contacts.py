@@ -250,11 +250,18 @@ def _passes_over(
 ) -> bool:
     """Whether a hand touches something fixed by the way, as it goes to a thing or leaves one.
 
-    While it touches no mobile object it neither halts there nor turns back, and soon is off again.
+    It touches a mobile object soon before or after. While it touches none it neither halts there
+    nor turns back, and soon is off again.
 
     ``span``: the contact. ``busy``: when it touches mobile objects.
     """
     times = hand.poses.smooth.times
+    if not any(
+        times[low] - times[span[1]] <= thresholds.passing_by_s
+        and times[span[0]] - times[high] <= thresholds.passing_by_s
+        for low, high in busy
+    ):
+        return False
     alone = mask([span], len(times)) & ~mask(busy, len(times))
     still = mask(resting(hand.poses, thresholds), len(times))
     for first, last in geometry.runs(alone):

@@ -201,6 +201,7 @@ def test_with_two_wheels_added_every_stroke_of_a_wheelchair_is_counted(
         whole = np.interp(capture.times, capture.times[seen_at], heights[seen_at])
         lowest, _ = find_peaks(-whole, prominence=0.3)
         (link,) = [each for each in seen.links if each.ee == f"{side}_hand"]
-        hits = [each for each in link.segments if each.name == "Hit"]
-        assert {each.objects for each in hits} == {(f"{side}_wheel",)}
-        assert len(hits) == len(lowest) == 18
+        # The slower ones, under a metre a second towards the wheel, are no blows.
+        strokes = [each for each in link.segments if each.name in ("Hit", "Reach")]
+        assert {each.objects for each in strokes} == {(f"{side}_wheel",)}
+        assert len(strokes) == len(lowest) == 18
