@@ -31,7 +31,7 @@ class Handling:
         fast: Contacts that began as fast as a blow: end-effector, object, first frame.
         laid: Contacts of objects that can be moved with what is fixed.
         limbs: What limb an end-effector is of, where it is of one.
-        rested: Rests of end-effectors.
+        rested: Rests of end-effectors that have not gone far since.
         departs: For how many frames after a rest later ones may tell when it truly ended.
     """
 
@@ -65,8 +65,13 @@ class Handling:
         return min((since - 1 for since in open_), default=self.last)
 
     def just_left(self) -> list[Resting]:
-        """The rests of which later frames may yet tell when they truly ended."""
-        return [s for s in self.rested if self.last - self.departs <= s.last < self.last]
+        """The rests in the air of which later frames may yet tell when they truly ended."""
+        return [
+            stay
+            for stay in self.rested
+            if self.last - self.departs <= stay.last < self.last
+            and not any(t.body == stay.ee and t.last >= stay.last for t in self.touching)
+        ]
 
     def with_margin(self, since: Mapping[str, int]) -> dict[str, int]:
         """Frames so much earlier that no event of those at them is before."""

@@ -54,7 +54,8 @@ LASTS_S = 0.1  # How much later than a rule asks for something is taken to have 
 FRESH_S = 0.2  # A motion that has just begun may turn out to be none: a glitch, or the filter's.
 NEAR_S = 0.9  # It is awaited whether bodies touch again that have stayed near each other.
 WINDOW_S = 4.0  # Least length of the window.
-DEPARTS_S = 1.5  # When a rest truly ended is told by how the motion after it grows.
+DEPARTS_S = 1.5  # When a rest truly ended is told by how the motion after it grows,
+OFF_M = 0.05  # ... up to so far from where it was.
 MOTION_S = 10.0  # It reaches back to the beginning of motions that go on, to so long ago at most.
 REST_S = 30.0  # The place of a resting body is the median of so much of its rest.
 HANDING_S = 2.0  # While two end-effectors hold one object, it is awaited who lets go of it.
@@ -259,7 +260,11 @@ class LiveObserver:
                 if isinstance(fact, ClosingSpeed) and fact.speed >= times().blow_mm_s
             },
             laid=[fact for fact in facts if isinstance(fact, Touching) and fact.other in fixed],
-            rested=[fact for fact in facts if isinstance(fact, Resting)],
+            rested=[
+                fact
+                for fact in facts
+                if isinstance(fact, Resting) and not _is_off(fact, measurements, window.first)
+            ],
             departs=self._frames(DEPARTS_S),
             limbs={
                 sensor.name: (rig.agent_of(sensor), sensor.side)
@@ -346,3 +351,12 @@ class LiveObserver:
 
     def _frames(self, duration_s: float) -> int:
         return max(1, round(duration_s / self._step_s))
+
+
+def _is_off(rest: Resting, measurements: Measurements, begin: int) -> bool:
+    """Whether an end-effector has gone so far since a rest that it is clear when that ended."""
+    track = measurements.tracks.get(rest.ee)
+    if track is None or rest.last < begin:
+        return True
+    since = track.positions[rest.last - begin :]
+    return bool((np.linalg.norm(since - since[0], axis=1) > OFF_M).any())
