@@ -300,7 +300,8 @@ class _Trial:
                 pairs[first, second].append(touch)
 
         def of_base(hand: str, base: str) -> list[Interval]:
-            return [each.interval for each in pairs.get((hand, base), ()) if each.second == base]
+            touching = pairs.get((hand, base), ())
+            return [touch.interval for touch in touching if touch.second == base]
 
         def stays(hand: str, base: str, span: tuple[int, ...]) -> bool:
             return any(low <= span[0] and span[1] <= high for low, high in of_base(hand, base))
@@ -308,40 +309,42 @@ class _Trial:
         def steadied(touch: Contact, ends: tuple[int, ...]) -> bool:
             base = whole[touch.second]
             return stays(touch.first, base, ends) and any(
-                each.second == touch.second and _meet(each.interval, ends)
+                other.second == touch.second and _meet(other.interval, ends)
                 for hand in self.acting
-                for each in pairs.get((hand, base), ())
+                for other in pairs.get((hand, base), ())
                 if hand != touch.first and not stays(hand, base, ends)
             )
 
         for (first, second), found in list(pairs.items()):
-            own = [each for each in found if (each.first, each.second) == (first, second)]
+            own = [touch for touch in found if (touch.first, touch.second) == (first, second)]
             if own == found:
                 yield from own
                 continue
-            for span in geometry.runs(mask([each.interval for each in found], count)):
-                begins = min(found, key=lambda each: (each.interval[0] - span[0]) % count)
+            for span in geometry.runs(mask([touch.interval for touch in found], count)):
+                begins = min(found, key=lambda touch: (touch.interval[0] - span[0]) % count)
                 gap_m = begins.gap_m + BESIDE_M * (begins not in own)
-                part = {name for each in found for name in (each.first, each.second)} & set(whole)
+                part = {name for touch in found for name in (touch.first, touch.second)} & set(
+                    whole
+                )
                 worked = [ends for name, ends in moved if name in part and _meet(ends, span)]
-                has_both = any(_meet(each, span) for each in of_base(first, second)) and all(
+                has_both = any(_meet(base, span) for base in of_base(first, second)) and all(
                     stays(first, second, ends) for ends in worked
                 )
                 yield Contact(first, second, span, gap_m, begins.lingers, not has_both)
-                for each in found:
-                    if each in own or not _meet(each.interval, span):
+                for touch in found:
+                    if touch in own or not _meet(touch.interval, span):
                         continue
                     if first not in self.acting or not any(
                         _meet(base, span) for base in of_base(first, second)
                     ):
-                        yield each
+                        yield touch
                         continue
-                    own_work = [ends for ends in worked if not steadied(each, ends)]
+                    own_work = [ends for ends in worked if not steadied(touch, ends)]
                     if own_work:
                         # Before, it steadied the thing, if somebody else worked the part.
                         late = own_work != worked
-                        begin = max(each.interval[0], min(own_work)[0] if late else 0)
-                        yield replace(each, interval=(begin, each.interval[1]))
+                        begin = max(touch.interval[0], min(own_work)[0] if late else 0)
+                        yield replace(touch, interval=(begin, touch.interval[1]))
 
     def motions(self, touches: Iterable[Contact]) -> Iterator[Fact]:
         """When each object moves, by its floor, and when that truly began and ended."""

@@ -94,12 +94,8 @@ def laptop(
         turns = jitter * Rotation.from_matrix(poses[:, :3, :3])
         return Stream(times, poses[:, :3, 3], turns.as_quat(scalar_first=True))
 
-    def thing(name: str, form: Form, poses: np.ndarray, **more: object) -> TagObject:
-        still = more.get("tag") is TagType.FIXED
-        known = {"tag": TagType.MOBILE, "kind": name} | more
-        return TagObject(
-            name, stream=stream(poses, 0.0 if still else noise_m), shape=surface(form), **known
-        )  # type: ignore[arg-type]
+    def thing(name: str, form: Form, poses: np.ndarray) -> TagObject:
+        return TagObject(name, TagType.MOBILE, stream(poses), surface(form), name)
 
     flat = Form("base", (block((-0.11, -0.15, 0.0), (0.11, 0.15, 0.018)),))
     cover = Form("lid", (block((-0.22, -0.15, 0.0005), (0.0, 0.15, 0.008)),))
@@ -116,8 +112,8 @@ def laptop(
         tuple(sensors),
         (
             thing("base", flat, base),
-            thing("lid", cover, bodies["lid"], part_of=part_of, closed_deg=closed_deg),
-            thing("table", TABLE, table, tag=TagType.FIXED),
+            replace(thing("lid", cover, bodies["lid"]), part_of=part_of, closed_deg=closed_deg),
+            TagObject("table", TagType.FIXED, stream(table, 0.0), surface(TABLE), "table"),
         ),
     )
 

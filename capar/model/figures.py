@@ -6,7 +6,7 @@ _DECIMAL = re.compile(r"(?<![\w.:/])-?\d+\.\d+(?:[eE][+-]?\d+)?(?![\w.:/])")
 
 
 def rounded(value: float, places: int) -> float:
-    """A number to so many decimal places; of one below 1, to one significant digit more."""
+    """A number rounded to decimal places; below 1, to one significant digit more than that."""
     return round(value, places) if abs(value) >= 1.0 else float(f"{value:.{places + 1}g}")
 
 

@@ -208,7 +208,7 @@ def _closing(known: Measures, asked: Measured, frames: Frames) -> Series:
     one, other = map(known.body, asked.bodies)
     limits = thresholds_of(known.measurements.calibration)
     normal = contact_normal(one, other, asked.first, limits)
-    speeds = MILLI * np.array([closing_speed(one, other, int(each), normal) for each in frames])
+    speeds = MILLI * np.array([closing_speed(one, other, int(frame), normal) for frame in frames])
     bars = known.bars(Touching, body=asked.bodies[0], other=asked.bodies[1])
     return Series(frames, speeds, (), bars, "in contact")
 

@@ -239,7 +239,7 @@ def observe_again(
         for path in sorted(place.rglob("*.toml")):
             if path.is_file() and sha256(path.read_bytes()).hexdigest() in digests:
                 trial = replace(read_capture(place_of(path, known.name)), name=known.name)
-                if sorted(each.sha256 for each in trial.sources) == digests:
+                if sorted(source.sha256 for source in trial.sources) == digests:
                     found = measure(trial)
                     # Flicker is resolved if it was in what was measured then.
                     resolved = next(

@@ -98,7 +98,7 @@ def solve(files: Iterable[Path], facts: str | Iterable[Fact] = "") -> Answer:
     """
     answers = _answers(files, facts, "--models=2")
     if len(answers) > 1:
-        first, second = (set(each.atoms) for each in answers)
+        first, second = (set(answer.atoms) for answer in answers)
         name, arguments = sorted(first ^ second, key=str)[0]
         raise RuleError(
             "the rules have more than one answer over these facts; they differ first in "
@@ -168,8 +168,8 @@ def least_contradiction(
                 pass  # without these facts nothing can be asked
             at += size
         size = size // 2 or int(len(facts) < before)
-    shipped = tuple(each for each in last.files if each.is_relative_to(rule_file("")))
-    added = tuple(each for each in last.files if each not in shipped)
+    shipped = tuple(file for file in last.files if file.is_relative_to(rule_file("")))
+    added = tuple(file for file in last.files if file not in shipped)
     if not added or not _has_answer(shipped, last.facts):
         return shipped[:1], tuple(facts)
     alone = (each for each in added if not _has_answer((*shipped, each), last.facts))

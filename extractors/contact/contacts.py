@@ -225,7 +225,7 @@ def counted_meetings(
     known = list(meetings)
     hands = {each.name: each for each in capture.acting if each.end_effector == HAND}
     mobile = {each.name for each in capture.objects if each.tag is TagType.MOBILE}
-    fixed = {each.name for each in capture.objects if each.tag is TagType.FIXED}
+    fixed = {thing.name for thing in capture.objects if thing.tag is TagType.FIXED}
     held = [(one, span) for one, other, span in known if one in hands and other in mobile]
     for one, other, span in known:
         if one in hands and other in fixed:

@@ -47,15 +47,14 @@ def closing_speed(
     ``normal``: the unit normal of their contact, from the other to the body; None if unknown.
     """
     times = body.poses.filled.times
-    boxes = [each.boxes for each in (body, other)]
+    boxes = [body.boxes, other.boxes]
     low, high = (np.array([box[side][frame] for box in boxes]) for side in (0, 1))
     place = (low.max(axis=0) + high.min(axis=0)) / 2.0
     axis = np.eye(3) if normal is None else np.asarray(normal)[:, None]
 
     def offset(first: int, *, recorded: bool) -> Float[np.ndarray, "some axes"]:
-        one, two = (
-            _material_point(each, place, frame, first, recorded=recorded) for each in (body, other)
-        )
+        one = _material_point(body, place, frame, first, recorded=recorded)
+        two = _material_point(other, place, frame, first, recorded=recorded)
         return np.asarray((one - two) @ axis)
 
     first = _before(times, frame, APPROACH_S)

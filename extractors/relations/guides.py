@@ -311,7 +311,7 @@ def _part(
     at = _stated_course(one, fit, moved, base)
     told = at is None and base.planes is not None
     closed = _closed(moved, base, fit, ends, thresholds) if told else None
-    if told and closed is None and fit.kind == RAIL:
+    if told and closed is None and fit.kind == RAIL and (stated or not other.poses.rests):
         side = np.cross(fit.axis, UP)
         ways = (each / np.linalg.norm(each) for each in (side, -side, -UP) if each.any())
         covers = [

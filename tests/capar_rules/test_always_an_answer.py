@@ -81,11 +81,13 @@ class World:
         drawn = (self.fact(self.random.choice(self.kinds)) for _ in range(count))
         return tuple(dict.fromkeys((Frames(0, self.last), RateMhz(rate), *links, *tags, *drawn)))
 
-    def fact(self, kind: type[Observed], **values: Any) -> Observed:
+    def fact(self, kind: Any, **values: Any) -> Observed:
         """A fact of a kind, with these values or others."""
-        for each in fields(kind):  # type: ignore[arg-type]
-            values.setdefault(each.name, self.value(kind.predicate, each.name, each.type, values))
-        return kind(**values)
+        for field in fields(kind):
+            value = self.value(kind.predicate, field.name, field.type, values)
+            values.setdefault(field.name, value)
+        fact: Observed = kind(**values)
+        return fact
 
     def value(self, predicate: str, name: str, kind: object, values: dict[str, Any]) -> int | str:
         """A value of a field, where those before it are known."""

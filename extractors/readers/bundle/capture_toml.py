@@ -392,6 +392,15 @@ def _objects(bundle: _Bundle, shapes: Mapping[str, Shape | None]) -> list[TagObj
         names = [each.name for each in bundle.objects if each.name != entry.name]
         if entry.part_of and entry.part_of not in names:
             raise entry.unknown("object", entry.part_of, names, "part_of")
+        bases, base = {each.name: each.part_of for each in bundle.objects}, entry.part_of
+        for _ in names:
+            base = bases.get(base, "") if base != entry.name else base
+        if base == entry.name:
+            raise entry.error(
+                "part_of",
+                f"{entry.name!r} would be a part of itself.",
+                "It names the base, which is no part of the object.",
+            )
         built[entry.name] = TagObject(
             name=entry.name,
             tag=TagType(entry.tag),

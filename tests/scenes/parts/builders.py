@@ -42,7 +42,7 @@ class Jointed(Body):
     Where the turn or shift is zero, its axes are parallel to the base's.
     """
 
-    base: Body = None  # type: ignore[assignment]
+    base: Body = field(kw_only=True)
     point: Vector = (0.0, 0.0, 0.0)
     """Its origin in the base's frame, if neither turned nor shifted [m]."""
 
