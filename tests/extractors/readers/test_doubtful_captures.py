@@ -175,3 +175,22 @@ def test_a_capture_states_places_on_the_body_of_names_that_do_not_tell_them(
             files_of(tmp_path)
     else:
         assert files_of(tmp_path)[0]["motion"].places == {"finger": "left_fingers"}
+
+
+THING = '[[object]]\nname = "{name}"\ntag = "mobile"\nbody = "hand"\npart_of = "{base}"\n'
+
+
+@pytest.mark.parametrize(
+    ("pairs", "said"),
+    [
+        ([("lid", "bax")], "no object 'bax'"),
+        ([("lid", "lid")], "no object 'lid'"),
+        ([("lid", "box"), ("box", "lid")], "would be a part of itself"),
+    ],
+)
+def test_an_object_is_a_part_of_another_and_never_of_itself(
+    pairs: list[tuple[str, str]], said: str, tmp_path: Path
+) -> None:
+    things = "".join(THING.format(name=name, base=base) for name, base in pairs)
+    with pytest.raises((CaptureError, FileError, UnknownNameError), match=said):
+        notices(tmp_path, TRIAL + things)
