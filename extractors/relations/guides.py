@@ -686,7 +686,7 @@ def _through(
     local = (points - body.middles[frame]) @ body.turn(frame)
     height = local @ body.planes[:, :3].T + body.planes[:, 3]
     slope = body.planes[:, :3] @ (way @ body.turn(frame))
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):  # lines along a plane
         at = -height / slope
     enters = np.where(slope < -PARALLEL, at, -np.inf).max(axis=1)
     leaves = np.where(slope > PARALLEL, at, np.inf).min(axis=1)
