@@ -18,7 +18,7 @@ from capar.model.capture import Capture, Sensor, TagObject, TagType
 from capar.model.errors import CaparError, CaptureError, UnknownNameError
 from extractors.bodies.bodies import Bodies, BodyGeometry, bodies_of
 from extractors.contact.contacts import FOOT, contact_tolerance, moving_grounds, pair_distances
-from extractors.motion.object_motion import motion_floor, rest_poses
+from extractors.motion.object_motion import first_rest, motion_floor
 from extractors.motion.phases import upright_axis
 from extractors.relations.support import foot_level
 from extractors.signals.filters import cutoff, filter_support_s, speed
@@ -109,7 +109,7 @@ def _body(
     if not isinstance(each, TagObject) or each.tag is TagType.MOBILE:
         rate_hz = frame_rate(poses.smooth.times)
         at = motion_floor(poses.noise, rate_hz, own_m=own_m, thresholds=thresholds)
-        first = next(iter(rest_poses(poses, at, thresholds)), None)
+        first = first_rest(poses, at, thresholds)
     x, y, z = map(float, upright_axis(poses, first))
     speeds = speed(poses.smooth.positions, capture.times)
     return BodyCalibration(

@@ -88,8 +88,13 @@ def rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Rest
     """
     known = _CACHE.setdefault(poses, {})
     if (floor, thresholds) not in known:
-        known[floor, thresholds] = _window_rests(poses, floor, thresholds)
+        known[floor, thresholds] = tuple(_window_rests(poses, floor, thresholds))
     return known[floor, thresholds]
+
+
+def first_rest(poses: Poses, floor: Floor, thresholds: Thresholds) -> RestPose | None:
+    """The first of these places; the others, which a body that creeps has many of, are not made."""
+    return next(_window_rests(poses, floor, thresholds), None)
 
 
 _CACHE: WeakKeyDictionary[Poses, dict[tuple[Floor, Thresholds], tuple[RestPose, ...]]] = (
@@ -98,10 +103,11 @@ _CACHE: WeakKeyDictionary[Poses, dict[tuple[Floor, Thresholds], tuple[RestPose, 
 """Where bodies rest, by their poses: three measurements ask for it."""
 
 
-def _window_rests(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[RestPose, ...]:
+def _window_rests(poses: Poses, floor: Floor, thresholds: Thresholds) -> Iterator[RestPose]:
     """The places of rest in a window, told by the poses from longer ago where they are known."""
     if poses.longer is None:
-        return _rest_poses(poses.smooth, poses.filled, poses.noise, floor, thresholds)
+        yield from _rest_poses(poses.smooth, poses.filled, poses.noise, floor, thresholds)
+        return
     before = len(poses.longer.times) - len(poses.smooth.times)
     recorded = replace(
         poses.longer,
@@ -110,11 +116,9 @@ def _window_rests(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[R
             (poses.longer.orientations[:before], poses.filled.orientations)
         ),
     )
-    return tuple(
-        _earlier(each, before)
-        for each in _rest_poses(poses.longer, recorded, poses.noise, floor, thresholds)
-        if each.interval[1] >= before
-    )
+    for each in _rest_poses(poses.longer, recorded, poses.noise, floor, thresholds):
+        if each.interval[1] >= before:
+            yield _earlier(each, before)
 
 
 def _earlier(rest: RestPose, frames: int) -> RestPose:
@@ -125,18 +129,18 @@ def _earlier(rest: RestPose, frames: int) -> RestPose:
 
 def _rest_poses(
     stream: Stream, recorded: Stream, noise: Noise, floor: Floor, thresholds: Thresholds
-) -> tuple[RestPose, ...]:
+) -> Iterator[RestPose]:
     times = stream.times
     rate_hz = frame_rate(times)
     begins = max(1, round(thresholds.rest_begins_s * rate_hz))
     calm = slow_frames(stream, noise, rate_hz, thresholds)
-    found: list[RestPose] = []
+    least = max(1, round(thresholds.rest_minimum_s * rate_hz))
+    known = -1
     for first, last in intervals(calm, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
-        if found and last <= found[-1].interval[1]:
-            continue
-        least = max(1, round(thresholds.rest_minimum_s * rate_hz))
-        found += _stays((stream, recorded), (first, last), floor, least, begins)
-    return tuple(found)
+        if last > known:
+            for stay in _stays((stream, recorded), (first, last), floor, least, begins):
+                known = stay.interval[1]
+                yield stay
 
 
 def _stays(
@@ -291,6 +295,17 @@ def resting(poses: Poses, thresholds: Thresholds) -> tuple[Interval, ...]:
     A body that stirs a little within the floor of motion of its place rests on; its last
     millimetres of settling and its first of leaving are motion.
     """
+    known = _RESTING.setdefault(poses, {})
+    if thresholds not in known:
+        known[thresholds] = tuple(_resting(poses, thresholds))
+    return known[thresholds]
+
+
+_RESTING: WeakKeyDictionary[Poses, dict[Thresholds, tuple[Interval, ...]]] = WeakKeyDictionary()
+"""These intervals, by poses: each contact of a hand asks for them."""
+
+
+def _resting(poses: Poses, thresholds: Thresholds) -> list[Interval]:
     stream = poses.smooth
     rate_hz = frame_rate(stream.times)
     floor = motion_floor(poses.noise, rate_hz, own_m=None, thresholds=thresholds)
@@ -304,4 +319,4 @@ def resting(poses: Poses, thresholds: Thresholds) -> tuple[Interval, ...]:
             if found and span[0] <= found[-1][1] + 1:
                 span = found.pop()[0], span[1]
             found.append(span)
-    return tuple(found)
+    return found
