@@ -22,7 +22,7 @@ from pyoxigraph import Quad
 
 from capar.model.observation import Observation
 from kb.actionary import Actionary
-from kb.encode import encode
+from kb.encode.observation import encode
 from kb.queries.questions import question
 from kb.store.names import GRAPHS
 from kb.store.stores import EmbeddedStore

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from kb.encode.observation import encode, identity, run, run_removal
 from kb.errors import ExistsError, StoreError
 from kb.lookup.agents import Agents, aliases, joined
 from kb.lookup.pars import unknown_observation
@@ -122,6 +121,8 @@ class Actionary(Agents, AbstractContextManager["Actionary"]):
             ExistsError: Another capture of the same name is there.
             ShapeError: It breaks the model.
         """
+        from kb.encode.observation import encode, identity, run, run_removal
+
         graph = names.observation(observation.capture)
         there = self.store.ask(
             f"SELECT ?identity WHERE {{ {graph} {CAPAR.identity} ?identity }}"
@@ -151,6 +152,8 @@ class Actionary(Agents, AbstractContextManager["Actionary"]):
         Raises:
             UnknownNameError: There is no observation of that name.
         """
+        from kb.encode.observation import run_removal
+
         if name not in [each.name for each in self.observations()]:
             raise unknown_observation(self.store, name)
         graph = names.observation(name)

@@ -4,12 +4,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from itertools import groupby
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pyoxigraph import Literal, NamedNode, Quad
 
 from capar.model.errors import UnknownNameError
-from capar.model.observation import ObservedLink, Segment, SegmentAddress
 from capar.model.par import ACTION_NAME, UNKNOWN
 from kb.errors import CorrectionError
 from kb.lookup.pars import observations, unknown_observation
@@ -19,6 +18,9 @@ from kb.store.statements import LABEL, TYPE
 from kb.store.stores import EmbeddedStore, Store
 from ontology import CAPAR
 from ontology.namespace import PROV, XSD
+
+if TYPE_CHECKING:
+    from capar.model.observation import ObservedLink, Segment, SegmentAddress
 
 GRAPH = names.GRAPHS["corrections"]
 BY = NamedNode(PROV + "wasAttributedTo")
@@ -143,7 +145,7 @@ def claimed(spans: Sequence[Span], at: int, change: Correction) -> list[Span]:
     return [replace(one, end_s=time_s), *right]
 
 
-def correct(store: Store, address: SegmentAddress, change: Correction, *, by: str) -> None:
+def correct(store: Store, address: "SegmentAddress", change: Correction, *, by: str) -> None:
     """Keep a person's claim about a segment beside what the machine says.
 
     Args:
@@ -204,8 +206,8 @@ def _spans(rows: Iterable[Sequence[object]]) -> tuple[Span, ...]:
 
 
 def corrected_links(
-    links: Sequence[ObservedLink], claims: Sequence[Span]
-) -> tuple[ObservedLink, ...]:
+    links: "Sequence[ObservedLink]", claims: Sequence[Span]
+) -> "tuple[ObservedLink, ...]":
     """The links with every claim in the place of what the machine says of its time.
 
     A segment that a claim gives or shortens keeps the objects and features of the machine's
@@ -227,7 +229,7 @@ def _overlap_s(start_s: float, end_s: float, span: Span) -> float:
     return min(end_s, span.end_s) - max(start_s, span.start_s)
 
 
-def _segment(machine: Sequence[Segment], index: int, span: Span) -> Segment:
+def _segment(machine: "Sequence[Segment]", index: int, span: Span) -> "Segment":
     basis = max(machine, key=lambda segment: _overlap_s(segment.start_s, segment.end_s, span))
     frames = max(basis.last - basis.first, 0)
     rate_hz = frames / (basis.end_s - basis.start_s) if frames else 0.0
@@ -296,6 +298,7 @@ def _rewritten(
     machine: Mapping[Any, list[Quad]], graph: NamedNode, capture: str, spans: Sequence[Span]
 ) -> Iterator[Quad]:
     """Statements of an end-effector's spans, each upon the segment that it overlaps most."""
+    from capar.model.observation import SegmentAddress
 
     def overlap_s(node: Any, span: Span) -> float:
         at: dict[NamedNode, Any] = {each.predicate: each.object for each in machine[node]}

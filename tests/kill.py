@@ -18,7 +18,7 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 from capar.model.observation import Observation
 from kb.actionary import Actionary
 from kb.checks import check
-from kb.encode import encode
+from kb.encode.observation import encode
 
 MADE = (drink_from_mug, pick_up_with_both_hands, with_unknown)
 LONGEST_S = 0.6

@@ -36,16 +36,33 @@ def test_importing_the_front_door_imports_nothing_heavy() -> None:
     assert not HEAVY & set(done.stdout.split())
 
 
-def test_the_help_imports_nothing_that_only_observing_needs() -> None:
+def loaded(*command: str) -> set[str]:
+    """The modules that a process has imported when its command has ended."""
     code = (
-        "import sys; from capar.cli import main; sys.argv = ['capar', '--help']\n"
+        f"import sys; from capar.cli import main; sys.argv = {['capar', *command]}\n"
         "try: main()\n"
-        "except SystemExit: print('modules:', *sys.modules)"
+        "except SystemExit: pass\n"
+        "print('modules:', *sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    loaded = done.stdout.partition("modules:")[2].split()
-    assert "typer" in loaded
-    assert not (HEAVY - {"typer", "rich", "pydantic"}) & set(loaded)
+    return set(done.stdout.partition("modules:")[2].split())
+
+
+def test_the_help_imports_nothing_that_only_observing_needs() -> None:
+    modules = loaded("--help")
+    assert "typer" in modules
+    assert not (HEAVY - {"typer", "rich", "pydantic"}) & modules
+
+
+def test_a_question_imports_nothing_that_only_observing_needs(tmp_path: Path) -> None:
+    with capar.open_actionary(tmp_path) as book:
+        book.add(drink_from_mug())
+    modules = loaded("query", "segments", "--actionary", str(tmp_path))
+    assert "pyoxigraph" in modules
+    assert not (HEAVY - {"typer", "pyoxigraph", "pydantic"}) & modules
+    code = "import sys, kb.store.stores; print(*sys.modules)"  # the process that answers it
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not (HEAVY - {"pyoxigraph"}) & set(done.stdout.split())
 
 
 def test_no_submodule_takes_the_place_of_a_public_function() -> None:

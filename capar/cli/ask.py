@@ -62,7 +62,6 @@ def query(
     A query can neither write nor run longer than --time-limit.
     """
     from kb import Actionary
-    from kb.corrections import corrected as corrected_copy
     from kb.queries.questions import FORMATS, check_known, listing, notes
     from kb.queries.questions import question as named
     from kb.store import sparql
@@ -81,7 +80,11 @@ def query(
     for sentence in sparql.unknown_terms(raw or ""):
         typer.echo(f"warning: {sentence}", err=True)
     with Actionary.open(actionary, read_only=True) as opened:
-        store = corrected_copy(opened.store) if corrected else opened.store
+        store = opened.store
+        if corrected:
+            from kb.corrections import corrected as corrected_copy
+
+            store = corrected_copy(store)
         found = store.ask_within(text, seconds=time_limit)
         if raw is None and not found.rows:
             check_known(store, named(question), given)
@@ -130,10 +133,11 @@ def _raw(question: str) -> str | None:
 
 
 def _print(found: "Answer", chosen: str) -> None:
-    from capar.views.tables import terminal_table
     from kb.queries.questions import FORMATS, cells, header
 
     if chosen == "table" and sys.stdout.isatty():
+        from capar.views.tables import terminal_table
+
         console().print(terminal_table(header(found), list(cells(found))))
     else:
         typer.echo(FORMATS[chosen](found), nl=False)

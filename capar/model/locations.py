@@ -10,28 +10,9 @@ from jaxtyping import Float
 
 from capar.model import geometry
 from capar.model.errors import ParError
+from capar.model.par import Nlt as Nlt
 
 NO_EXTENT_M = 1e-6  # a size below this is none [m]
-ACROSS = 1  # the axis (y) across an object's plane that parts its left (+y) from its right
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Nlt:
-    """Normalised local transform: a place in an object's frame over its size, and a quaternion."""
-
-    position: tuple[float, float, float]
-    #: Unit quaternion w x y z that takes the constraint's axes to the object's
-    orientation: tuple[float, float, float, float]
-
-    def mirrored(self, axis: int = ACROSS) -> "Nlt":
-        """The same place for the other side of the body (thesis 4.4.2.2), across an axis x, y or z.
-
-        The constraint's own axes are those of the other side's end-effector, mirrored alike.
-        """
-        x, y, z = (0.0 - each if i == axis else each for i, each in enumerate(self.position))
-        w, *vector = self.orientation
-        i, j, k = (each if n == axis else 0.0 - each for n, each in enumerate(vector))
-        return Nlt((x, y, z), (w, i, j, k))
 
 
 def normalised(

@@ -5,10 +5,29 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from capar.model.errors import ParError
-from capar.model.locations import Nlt as Nlt
 
 ACTION_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")  # what a primitive may be called: ``MoveObjTo``
 UNKNOWN = "Unknown"  # the name of a segment whose features no rule covers
+ACROSS = 1  # the axis (y) across an object's plane that parts its left (+y) from its right
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Nlt:
+    """Normalised local transform: a place in an object's frame over its size, and a quaternion."""
+
+    position: tuple[float, float, float]
+    #: Unit quaternion w x y z that takes the constraint's axes to the object's
+    orientation: tuple[float, float, float, float]
+
+    def mirrored(self, axis: int = ACROSS) -> "Nlt":
+        """The same place for the other side of the body (thesis 4.4.2.2), across an axis x, y or z.
+
+        The constraint's own axes are those of the other side's end-effector, mirrored alike.
+        """
+        x, y, z = (0.0 - each if i == axis else each for i, each in enumerate(self.position))
+        w, *vector = self.orientation
+        i, j, k = (each if n == axis else 0.0 - each for n, each in enumerate(vector))
+        return Nlt((x, y, z), (w, i, j, k))
 
 
 @dataclass(frozen=True, slots=True, order=True)

@@ -1,3 +1,1 @@
 """From an observation to statements, and facts back."""
-
-from kb.encode.observation import encode as encode

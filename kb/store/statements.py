@@ -2,17 +2,19 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from pyoxigraph import Literal, NamedNode, Quad, Triple
 
 from capar.model.errors import CaparError
-from capar.model.locations import SampledTrack
 from capar.model.par import Nlt, PathPoint
 from kb.store import names
 from kb.store.answer_values import Plain, plain
 from ontology import CAPAR
 from ontology.namespace import RDF, RDFS
+
+if TYPE_CHECKING:
+    from capar.model.locations import SampledTrack
 
 Term: TypeAlias = NamedNode | Literal
 Value: TypeAlias = NamedNode | Literal | str | float | int | bool | None
@@ -129,17 +131,19 @@ def path(points: Iterable[PathPoint]) -> Literal | None:
     return _compact(numbers, CAPAR.path) if numbers else None
 
 
-def track(value: SampledTrack) -> Literal:
+def track(value: "SampledTrack") -> Literal:
     """Sampled places as a literal: the seconds between two samples, and their text."""
     return Literal(f"{value.step_s!r} {value.samples}", datatype=CAPAR.sampledTrack)
 
 
-def track_of(text: str) -> SampledTrack:
+def track_of(text: str) -> "SampledTrack":
     """The sampled places that a literal states, of a body without a name.
 
     Raises:
         LiteralError: It is no step of time and places.
     """
+    from capar.model.locations import SampledTrack  # few questions need arrays
+
     step, _, samples = text.partition(" ")
     try:
         return SampledTrack("", float(step), samples)

@@ -19,8 +19,6 @@ from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, BinaryIO, TypeAlias, TypeVar
-from urllib.error import HTTPError, URLError
-from urllib.request import Request, urlopen
 
 from pyoxigraph import NamedNode, Quad, RdfFormat
 from pyoxigraph import Store as Oxigraph
@@ -403,6 +401,9 @@ Store: TypeAlias = EmbeddedStore | RemoteStore
 
 
 def _post(url: str, text: str, kind: str) -> tuple[str, bytes]:
+    from urllib.error import HTTPError, URLError
+    from urllib.request import Request, urlopen
+
     headers = {
         "Content-Type": f"{kind}; charset=utf-8",
         "Accept": "application/sparql-results+json, application/n-triples",

@@ -28,8 +28,7 @@ from capar.model.facts import (
 from capar.model.observation import ForceStyle, Observation
 from capar.pipelines.observation import observe
 from kb.actionary import Actionary
-from kb.encode import encode
-from kb.encode.observation import held_contacts, in_order, stored_facts
+from kb.encode.observation import encode, held_contacts, in_order, stored_facts
 from ontology import CAPAR
 
 MADE = (drink_from_mug(), pick_up_with_both_hands(), with_unknown())

@@ -4,7 +4,7 @@ import pytest
 from observations import with_unknown
 from pyoxigraph import Literal, NamedNode, Triple
 
-from kb.encode import encode
+from kb.encode.observation import encode
 from kb.store.statements import TYPE
 from ontology import BASE, CAPAR, terms
 from ontology.files import DEFINED_BY, WHOLE, ontology

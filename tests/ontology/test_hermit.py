@@ -15,7 +15,7 @@ import pytest
 from observations import with_unknown
 from pyoxigraph import Literal, NamedNode, RdfFormat, Triple, serialize
 
-from kb.encode import encode
+from kb.encode.observation import encode
 from kb.store.statements import TYPE
 from ontology import BASE, CAPAR
 from ontology.files import ontology

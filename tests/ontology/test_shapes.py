@@ -8,7 +8,7 @@ from observations import drink_from_mug, pick_up_with_both_hands, with_unknown
 from pyoxigraph import RdfFormat, Triple, parse
 
 from kb.checks import by_shacl
-from kb.encode import encode
+from kb.encode.observation import encode
 from kb.store.validation import by_thing, rules, violations
 from ontology.files import shape_files
 
