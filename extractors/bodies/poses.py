@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
 from capar.model.calibration import BodyCalibration, FixedPose
@@ -131,7 +130,7 @@ def poses_in(poses: Poses, base: Poses, thresholds: Thresholds) -> Poses:
     Lost where either is. The noise of the other's place and turning adds to its own.
     """
     filled = _stream_in(poses.filled, base.filled)
-    apart = np.linalg.norm(poses.filled.positions - base.filled.positions, axis=1)
+    apart = geometry.lengths(poses.filled.positions - base.filled.positions)
     lever_m = 0.0 if np.isnan(apart).all() else float(np.nanmean(apart))
     one, two = poses.noise, base.noise
     swing_m = lever_m * two.orientation_rad
@@ -179,11 +178,18 @@ def median_pose(stream: Stream, frames: slice) -> tuple[Vector, Quaternion]:
     """
     known = ~stream.lost[frames]
     places, turns = stream.positions[frames][known], stream.orientations[frames][known]
-    centre = np.median(places, axis=0)
-    near = np.linalg.norm(places - centre, axis=1)
-    core = near <= np.median(near)
-    mean = Rotation.from_quat(turns[core], scalar_first=True).mean()
-    return places[core].mean(axis=0), mean.as_quat(scalar_first=True)
+    near = geometry.lengths(places - _median(places))
+    core = near <= _median(near)
+    return places[core].mean(axis=0), geometry.mean_orientation(turns[core])
+
+
+def _median(values: Float[np.ndarray, "known *axes"]) -> Float[np.ndarray, "*axes"]:
+    """The median along the first axis; ``numpy.median`` looks for NaN, in four times the time."""
+    half = len(values) // 2
+    if len(values) % 2:
+        return np.asarray(np.partition(values, half, axis=0)[half])
+    parted = np.partition(values, (half - 1, half), axis=0)
+    return np.asarray((parted[half - 1] + parted[half]) / 2.0)
 
 
 def _fixed_pose(body: Sensor | TagObject, stream: Stream) -> FixedPose | None:

@@ -83,7 +83,7 @@ def sole_velocities(
         pace = np.where(lowest & ~np.isnan(pace), pace, np.inf)
         stillest = moves[np.arange(len(moves)), pace.argmin(axis=1)]
         out[block] = stillest[block.start - first : block.stop - first]
-    unknown = np.isnan(out).any(axis=1)
+    unknown = ~geometry.is_known(out)
     known = np.flatnonzero(~unknown)
     for frame in np.flatnonzero(unknown & ~foot.poses.lost) if known.size else ():
         out[frame] = out[known[np.abs(known - frame).argmin()]]
@@ -130,7 +130,7 @@ def _common_velocity(
             return None
         down = near(surfaces[0], surfaces[1], distance_m=distance_m)
         own = sole_velocities(foot, limits)[down]
-        own = own[~np.isnan(own).any(axis=1)]
+        own = own[geometry.is_known(own)]
         times = foot.poses.smooth.times
         if len(own) * float(times[1] - times[0]) < limits.rest_minimum_s:
             return None

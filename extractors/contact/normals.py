@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy.spatial import cKDTree
 
+from capar.model import geometry
 from capar.model.geometry import Vector
 from extractors.bodies.bodies import BodyGeometry
 from extractors.contact.surfaces import Surface, surface
@@ -110,7 +111,7 @@ def places(
 ) -> Places:
     """Places on triangles [m] within a box, spread evenly over each."""
     low, high = triangles.min(axis=1), triangles.max(axis=1)
-    some = triangles[((low <= box[1]) & (high >= box[0])).all(axis=1)]
+    some = triangles[geometry.every((low <= box[1]) & (high >= box[0]))]
     # The corner first that the longest edge does not touch.
     sides = np.linalg.norm(np.roll(some, -1, axis=1) - some, axis=2)
     order = (sides.argmax(axis=1)[:, None] + np.array([2, 0, 1])) % 3
@@ -126,7 +127,7 @@ def places(
         u, v = _spread(along, across)
         points = some[rows, None, 0] + u[:, None] * one[rows, None]
         points = points + v[:, None] * two[rows, None]
-        inside = ((points >= box[0]) & (points <= box[1])).all(axis=2)
+        inside = geometry.every((points >= box[0]) & (points <= box[1]))
         row = rows[np.nonzero(inside)[0]]
         areas = 0.5 * length[row] / len(u)
         found.append((points[inside], normal[row] / length[row, None], areas))
@@ -240,7 +241,7 @@ def _triangles(
     local = ends @ body.turn(frame) + of.centre
     low, high = of.triangle_boxes
     near = (low <= local.max(axis=0) + SLACK_M) & (high >= local.min(axis=0) - SLACK_M)
-    some = of.triangles[near.all(axis=1)] - of.centre
+    some = of.triangles[geometry.every(near)] - of.centre
     return _placed(some[:, ::-1] if of.inverted else some, body, frame)
 
 

@@ -8,6 +8,7 @@ import fcl
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from capar.model import geometry
 from capar.model.capture import Stream
 from capar.model.geometry import Holds, Places, Turns, Vector
 from extractors.bodies.bodies import blocks
@@ -196,7 +197,7 @@ def separation(
 
     NaN where a body is lost.
     """
-    known = ~np.isnan(first.positions[frames] + second.positions[frames]).any(axis=1)
+    known = geometry.is_known(first.positions[frames] + second.positions[frames])
     turns, places = _relative(first, second, frames[known])
     inside = _nested(first.surface, second.surface, turns, places)
     out = np.full(len(frames), np.nan)

@@ -9,6 +9,7 @@ import numpy as np
 import trimesh
 from jaxtyping import Bool, Float
 
+from capar.model import geometry
 from capar.model.capture import Shape
 from capar.model.geometry import Vector
 
@@ -81,7 +82,7 @@ class Surface:
     def contains(self, points: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, "points"]:
         """Whether points [m, body's frame] lie in the solid; never, if it bounds none."""
         low, high = self.shape.bounds
-        inside = ((points >= low) & (points <= high)).all(axis=1)
+        inside = geometry.every((points >= low) & (points <= high))
         if self.closed and inside.any():
             inside[inside] = self.mesh.contains(points[inside])
             return np.asarray(inside)

@@ -74,11 +74,11 @@ def spread(points: Points, stream: Stream, thresholds: Thresholds) -> Series:
     It is NaN where one of them is not known.
     """
     size = 2 * _half_window(stream, thresholds) + 1
-    lost = np.isnan(points).any(axis=1)
+    lost = ~geometry.is_known(points)
     known = np.where(lost[:, None], 0.0, points)
     high = maximum_filter1d(known, size, axis=0, mode="nearest")
     low = minimum_filter1d(known, size, axis=0, mode="nearest")
-    out = np.linalg.norm(high - low, axis=1)
+    out = geometry.lengths(high - low)
     unknown = maximum_filter1d(lost.astype(np.uint8), size, mode="nearest").astype(bool)
     return np.where(unknown, np.nan, out)
 
@@ -100,7 +100,7 @@ class TouchPoints:
 
     def apart(self, first: Stream, second: Stream) -> Series:
         """Distance of the two points [m]; NaN where either body is lost."""
-        return np.asarray(np.linalg.norm(_at(first, self.first) - _at(second, self.second), axis=1))
+        return np.asarray(geometry.lengths(_at(first, self.first) - _at(second, self.second)))
 
 
 def touch_points(
@@ -208,7 +208,7 @@ class Evidence:
         gaps: dict[str, Series] = {}
         for other in others:
             offset = own.poses.settled.positions - other.poses.settled.positions
-            gap = np.linalg.norm(offset, axis=1)
+            gap = geometry.lengths(offset)
             limit = self.thresholds.settle_reach_m
             if apart.any():
                 usual = float(np.nanmedian(gap[apart]))

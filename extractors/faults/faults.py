@@ -74,7 +74,7 @@ def reaches(capture: Capture, thresholds: Thresholds) -> list[Reach]:
     """The largest distance of each two sensors of a person through a recording, by name."""
     found = []
     for first, second in combinations(capture.sensors, 2):
-        apart = np.linalg.norm(first.stream.positions - second.stream.positions, axis=1)
+        apart = geometry.lengths(first.stream.positions - second.stream.positions)
         if capture.agent_of(first) != capture.agent_of(second) or np.isnan(apart).all():
             continue
         kinds, least = {first.end_effector, second.end_effector}, 0.0
@@ -108,7 +108,7 @@ def size_notices(capture: Capture, thresholds: Thresholds) -> Iterator[Notice]:
         )  # fmt: skip
     for sensor in () if found else capture.sensors:
         # A sensor alone that is faster than any hand for a good part of the time.
-        steps = np.linalg.norm(np.diff(sensor.stream.positions, axis=0), axis=1)
+        steps = geometry.lengths(np.diff(sensor.stream.positions, axis=0))
         speeds = steps / np.diff(capture.times)
         fast = (
             np.nan if np.isnan(speeds).all() else np.nanquantile(speeds, thresholds.speed_quantile)
@@ -282,9 +282,9 @@ def _sides(
     """How far the right one is on the right of the left one in the frames that show it [m]."""
     ahead = rotation_matrices(head.stream.orientations) @ np.asarray(head.gaze)
     rightward = np.cross(ahead / np.linalg.norm(head.gaze), UP)
-    level = np.linalg.norm(rightward, axis=1)
+    level = geometry.lengths(rightward)
     apart = right.stream.positions - left.stream.positions
     with np.errstate(invalid="ignore", divide="ignore"):
         aside = np.einsum("ij,ij->i", apart, rightward) / level
-        wide = np.abs(aside) > thresholds.apart_share * np.linalg.norm(apart, axis=1)
+        wide = np.abs(aside) > thresholds.apart_share * geometry.lengths(apart)
         return np.asarray(aside[wide & (level > thresholds.level_gaze)])

@@ -72,8 +72,8 @@ def flights(
 
 def goes_along(places: Places, carrier: Places, frames: slice, thresholds: Thresholds) -> bool:
     """Whether a carrier keeps its distance from a body, compared with how far the body goes."""
-    way = np.linalg.norm(places[frames] - places[frames.start], axis=1)
-    apart = np.linalg.norm(places[frames] - carrier[frames], axis=1)
+    way = geometry.lengths(places[frames] - places[frames.start])
+    apart = geometry.lengths(places[frames] - carrier[frames])
     return not np.isnan(apart).all() and bool(
         np.nanmax(apart) - np.nanmin(apart) < thresholds.flight_along_share * way.max()
     )
@@ -94,7 +94,7 @@ def _flight(
     clock = times[frames] - times[frames.start]
     # Acceleration is even throughout: there is no cubic and no quartic term.
     basis, _ = np.linalg.qr(np.vander(clock / clock[-1], 5, increasing=True))
-    terms = np.linalg.norm(basis.T @ places[frames], axis=1)
+    terms = geometry.lengths(basis.T @ places[frames])
     allowed_m = thresholds.flight_even_share * terms[2] + thresholds.flight_even_sigmas * noise_m
     if not max(terms[3], terms[4]) <= allowed_m:
         return None
@@ -133,8 +133,8 @@ def _bends(
     basis = _polynomials(width)
     centred = places - places.mean(axis=0)
     terms = [correlate1d(centred, each, axis=0, mode="nearest") for each in basis]
-    bend = np.linalg.norm(terms[2], axis=1)
-    change = np.linalg.norm(terms[3], axis=1)
+    bend = geometry.lengths(terms[2])
+    change = geometry.lengths(terms[3])
     energy = width * correlate1d(centred**2, np.full(width, 1.0 / width), axis=0, mode="nearest")
     left = (energy - sum(each**2 for each in terms)).sum(axis=1)
     misfit = np.sqrt(np.maximum(left, 0.0))
@@ -153,7 +153,7 @@ def _steady(
     """The runs of fitting frames in which the bend is the same."""
     for first, last in geometry.runs(fits):
         middle = np.median(bend[first : last + 1], axis=0)
-        off = np.linalg.norm(bend[first : last + 1] - middle, axis=1)
+        off = geometry.lengths(bend[first : last + 1] - middle)
         same = off <= thresholds.flight_change_share * float(np.linalg.norm(middle))
         for begin, end in geometry.runs(same):
             if end - begin + 1 >= max(3, round(thresholds.flight_steady_share * width)):

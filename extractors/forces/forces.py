@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 from jaxtyping import Float
 
+from capar.model import geometry
 from capar.model.capture import Capture, TagType
 from capar.model.facts import Touching
 from capar.model.geometry import Places, Series, Vector
@@ -188,7 +189,7 @@ def fit_free_motion(
     course = _Course(clock, path, begin, half, surfaces)
     late, bounce = course.resistance(damping)
     motion = course.motion(late, bounce)
-    off = np.linalg.norm(motion.positions - path, axis=1)
+    off = geometry.lengths(motion.positions - path)
     return Fit(
         start_s=float(begin.start_s),
         position=begin.place,
@@ -447,7 +448,7 @@ def _style(
 
 def _gone(times: Series, places: Places) -> float | None:
     """How far a thing goes [m]; None where it does not go off at once, or was lost."""
-    gone = np.linalg.norm(places - places[0], axis=1)
+    gone = geometry.lengths(places - places[0])
     soon = times <= times[0] + VELOCITY_S
     if np.isnan(gone[0]) or np.nanmax(gone[soon]) < 0.5 * GOES_MPS * VELOCITY_S:
         return None

@@ -3,6 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
+from capar.model import geometry
 from capar.model.geometry import Places, Series, Vector
 from extractors.bodies.bodies import BodyGeometry
 from extractors.bodies.poses import rotation_matrices
@@ -61,7 +62,7 @@ def closing_speed(
     way = offset(first, recorded=False)
     if frame == 0 or len(way) < 2 or np.isnan(way).any():
         return 0.0
-    speeds = np.linalg.norm(np.diff(way, axis=0), axis=1) / np.diff(times[first : frame + 1])
+    speeds = geometry.lengths(np.diff(way, axis=0)) / np.diff(times[first : frame + 1])
     begin = _before(times, frame, LATE_S + SWING_S)
     met, clock = offset(begin, recorded=True), times[begin : frame + 1]
     ends = range(_before(times, frame, LATE_S), frame + 1)
@@ -121,7 +122,7 @@ def falls(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:
     """Closed intervals of frames in which a body's acceleration is that of free fall."""
     times = body.poses.smooth.times
     rate = velocity(velocity(body.middles, times), times)
-    apart = np.linalg.norm(rate + np.array([0.0, 0.0, GRAVITY_MPS2]), axis=1)
+    apart = geometry.lengths(rate + np.array([0.0, 0.0, GRAVITY_MPS2]))
     with np.errstate(invalid="ignore"):
         free = apart < thresholds.fall_share * GRAVITY_MPS2
     return tuple(intervals(free, times, dropout_s=0.0, minimum_s=thresholds.fall_minimum_s))

@@ -31,6 +31,8 @@ STROKES_S = tuple(0.15 * 40.0 ** (step / 11.0) for step in range(12))
 """Durations of smooth strokes (minimum jerk; Flash and Hogan 1985) that are tried [s]: from the
 least duration of a rest to 6 s; longer ones begin alike."""
 
+_PACES = np.array([1.0 / stroke_s for stroke_s in STROKES_S])
+
 USUAL_S, RATIO = 1.0, 2.5
 """Most strokes of people's arms last for this [s], or up to so many times more or less [1]: a place
 of rest is reached in half a second, a bowl is emptied in two."""
@@ -113,19 +115,6 @@ class Growth:
     place: float
     """Deviation of the place from where it was taken to be [1]."""
 
-    def product(
-        self, one: Float[np.ndarray, "*some frames"], other: Float[np.ndarray, "*some frames"]
-    ) -> Float[np.ndarray, "*some"]:
-        """Inner product of displacements, weighted by what each frame tells.
-
-        All are from one place: an error of it is common to all frames, so that the inverse of their
-        covariance has a second term (Sherman and Morrison 1950).
-        """
-        common = self.place**2 / (1.0 + self.place**2 * self.told.sum())
-        return np.asarray(
-            (one * other) @ self.told - common * (one @ self.told) * (other @ self.told)
-        )
-
 
 def beginning_s(track: Growth, earliest_s: float, latest_s: float) -> float:
     """When a displacement began to grow from nothing [s]: the mean over all that may explain it.
@@ -142,20 +131,24 @@ def beginning_s(track: Growth, earliest_s: float, latest_s: float) -> float:
     if earliest_s >= latest_s:
         return latest_s
     tries = np.unique(np.concatenate([earliest_s * _SPREAD, latest_s * _SPREAD]))
-    left = float(_misfit(track, tries).min()) / len(track.way)
-    earliest_s /= float(np.sqrt(np.clip(left, 1.0, UNEXPLAINED)))
-    tries = np.unique(np.concatenate([earliest_s * _SPREAD, latest_s * _SPREAD]))
-    mean_s, spread_s = _mean(track, tries)
+    misfit = _misfit(track, tries)
+    left = float(misfit.min()) / len(track.way)
+    if left > 1.0:
+        earliest_s /= float(np.sqrt(min(left, UNEXPLAINED)))
+        tries = np.unique(np.concatenate([earliest_s * _SPREAD, latest_s * _SPREAD]))
+        misfit = _misfit(track, tries)
+    mean_s, spread_s = _mean(misfit, tries)
     half_s = ABOUT * spread_s + float(np.interp(mean_s, tries, np.gradient(tries)))
     tries = np.linspace(
         max(mean_s - half_s, earliest_s), min(mean_s + half_s, latest_s), CANDIDATES
     )
-    return _mean(track, tries)[0]
+    return _mean(_misfit(track, tries), tries)[0]
 
 
-def _mean(track: Growth, tries: Float[np.ndarray, "tries"]) -> tuple[float, float]:
+def _mean(
+    misfit: Float[np.ndarray, "profiles tries"], tries: Float[np.ndarray, "tries"]
+) -> tuple[float, float]:
     """The mean of some beginnings by how likely they are, and their deviation from it [s]."""
-    misfit = _misfit(track, tries)
     likely = _PRIOR @ np.exp(-0.5 * (misfit - misfit.min())) * np.gradient(tries)
     likely /= likely.sum()
     mean_s = float(likely @ tries)
@@ -165,18 +158,31 @@ def _mean(track: Growth, tries: Float[np.ndarray, "tries"]) -> tuple[float, floa
 def _misfit(
     track: Growth, tries: Float[np.ndarray, "tries"]
 ) -> Float[np.ndarray, "profiles tries"]:
-    """The weighted sum of squares that each profile leaves, from each beginning."""
+    """The weighted sum of squares that each profile leaves, from each beginning.
+
+    All displacements are from one place: an error of it is common to all frames, so that the
+    inverse of their covariance has a second term (Sherman and Morrison 1950).
+    """
     since = np.maximum(track.times[None, :] - tries[:, None], 0.0)
-    paces = np.array([1.0 / stroke_s for stroke_s in STROKES_S])
-    part = np.minimum(since[None] * paces[:, None, None], 1.0)
+    profiles = np.empty((1 + len(_PACES), *since.shape))
     # A steady speed, and the way done of strokes of least jerk.
-    strokes = part * part * part * (10.0 + part * (6.0 * part - 15.0))
-    profiles = np.concatenate([since[None], strokes])
-    power = track.product(profiles, profiles)
-    shared = np.maximum(track.product(profiles, track.way), 0.0)
+    profiles[0], strokes = since, profiles[1:]
+    part = np.minimum(np.multiply(since, _PACES[:, None, None], out=strokes), 1.0)
+    np.multiply(part, 6.0, out=strokes)
+    strokes -= 15.0
+    strokes *= part
+    strokes += 10.0
+    cubes = part * part
+    cubes *= part
+    strokes *= cubes
+    told, common = track.told, track.place**2 / (1.0 + track.place**2 * track.told.sum())
+    sums, way_sum = profiles @ told, track.way @ told
+    power = (profiles * profiles) @ told - common * sums * sums
+    shared = np.maximum((profiles * track.way) @ told - common * sums * way_sum, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         explained = np.where(power > 0.0, shared**2 / power, 0.0)
-    return np.asarray(track.product(track.way, track.way) - explained)
+    whole = (track.way * track.way) @ told - common * way_sum * way_sum
+    return np.asarray(whole - explained)
 
 
 AS_ONE = 2.0
@@ -452,7 +458,7 @@ def growth(
 ) -> Float[np.ndarray, "some"]:
     """How far an object is from a place, or turned, in units of a displacement [1]; NaN if lost."""
     stream = poses.smooth
-    distance = np.linalg.norm(stream.positions[frames] - stay.position, axis=1)
+    distance = geometry.lengths(stream.positions[frames] - stay.position)
     angle = geometry.angle_between(stream.orientations[frames], stay.orientation[None])
     return np.asarray(np.maximum(distance / unit.position_m, angle / unit.rotation_rad))
 

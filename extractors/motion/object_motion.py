@@ -1,9 +1,10 @@
 """When objects move and when they rest."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
+from typing import Any, TypeVar, cast
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -86,27 +87,31 @@ def rest_poses(poses: Poses, floor: Floor, thresholds: Thresholds) -> tuple[Rest
     the place to which the object came, the middle of its first poses: however long an object lies
     there, that is settled soon.
     """
-    known = _CACHE.setdefault(poses, {})
-    if (floor, thresholds) not in known:
-        known[floor, thresholds] = tuple(_window_rests(poses, floor, thresholds))
-    return known[floor, thresholds]
+    return _kept(poses, (floor, thresholds), lambda: tuple(_rests(poses, floor, thresholds)))
+
+
+_Found = TypeVar("_Found")
+_KEPT: WeakKeyDictionary[Poses, dict[object, Any]] = WeakKeyDictionary()
+
+
+def _kept(poses: Poses, asked: object, find: Callable[[], _Found]) -> _Found:
+    """What is found of the poses: sought once, as each contact and several measurements ask."""
+    known = _KEPT.setdefault(poses, {})
+    if asked not in known:
+        known[asked] = find()
+    return cast(_Found, known[asked])
 
 
 def first_rest(poses: Poses, floor: Floor, thresholds: Thresholds) -> RestPose | None:
-    """The first of these places; the others, which a body that creeps has many of, are not made."""
-    return next(_window_rests(poses, floor, thresholds), None)
+    """The first place of rest; the others are not sought for it."""
+    return next(_rests(poses, floor, thresholds), None)
 
 
-_CACHE: WeakKeyDictionary[Poses, dict[tuple[Floor, Thresholds], tuple[RestPose, ...]]] = (
-    WeakKeyDictionary()
-)
-"""Where bodies rest, by their poses: three measurements ask for it."""
-
-
-def _window_rests(poses: Poses, floor: Floor, thresholds: Thresholds) -> Iterator[RestPose]:
+def _rests(poses: Poses, floor: Floor, thresholds: Thresholds) -> Iterator[RestPose]:
     """The places of rest in a window, told by the poses from longer ago where they are known."""
     if poses.longer is None:
-        yield from _rest_poses(poses.smooth, poses.filled, poses.noise, floor, thresholds)
+        calm = _calm(poses, thresholds)
+        yield from _rest_poses(poses.smooth, poses.filled, calm, floor, thresholds)
         return
     before = len(poses.longer.times) - len(poses.smooth.times)
     recorded = replace(
@@ -116,7 +121,8 @@ def _window_rests(poses: Poses, floor: Floor, thresholds: Thresholds) -> Iterato
             (poses.longer.orientations[:before], poses.filled.orientations)
         ),
     )
-    for each in _rest_poses(poses.longer, recorded, poses.noise, floor, thresholds):
+    calm = slow_frames(poses.longer, poses.noise, frame_rate(poses.longer.times), thresholds)
+    for each in _rest_poses(poses.longer, recorded, calm, floor, thresholds):
         if each.interval[1] >= before:
             yield _earlier(each, before)
 
@@ -127,20 +133,25 @@ def _earlier(rest: RestPose, frames: int) -> RestPose:
     return replace(rest, interval=span, came=rest.came and replace(rest.came, interval=span))
 
 
+def _calm(poses: Poses, thresholds: Thresholds) -> Holds:
+    stream, rate_hz = poses.smooth, frame_rate(poses.smooth.times)
+    return _kept(poses, thresholds, lambda: slow_frames(stream, poses.noise, rate_hz, thresholds))
+
+
 def _rest_poses(
-    stream: Stream, recorded: Stream, noise: Noise, floor: Floor, thresholds: Thresholds
+    stream: Stream, recorded: Stream, calm: Holds, floor: Floor, thresholds: Thresholds
 ) -> Iterator[RestPose]:
     times = stream.times
     rate_hz = frame_rate(times)
     begins = max(1, round(thresholds.rest_begins_s * rate_hz))
-    calm = slow_frames(stream, noise, rate_hz, thresholds)
     least = max(1, round(thresholds.rest_minimum_s * rate_hz))
-    known = -1
+    until = -1
     for first, last in intervals(calm, times, dropout_s=0.0, minimum_s=thresholds.rest_minimum_s):
-        if last > known:
-            for stay in _stays((stream, recorded), (first, last), floor, least, begins):
-                known = stay.interval[1]
-                yield stay
+        if last <= until:
+            continue
+        for stay in _stays((stream, recorded), (first, last), floor, least, begins):
+            until = stay.interval[1]
+            yield stay
 
 
 def _stays(
@@ -211,9 +222,9 @@ def paces(stream: Stream, rate_hz: float, thresholds: Thresholds) -> tuple[Serie
     speed, turning = np.full(len(stream.times), np.nan), np.full(len(stream.times), np.nan)
     for first, last in geometry.runs(~stream.lost):
         part = slice(first, last + 1)
-        speed[part] = np.linalg.norm(slopes(stream.positions[part], half), axis=1) * rate_hz
+        speed[part] = geometry.lengths(slopes(stream.positions[part], half)) * rate_hz
         # A quaternion changes by half of the angle.
-        turn = np.linalg.norm(slopes(stream.orientations[part], half), axis=1)
+        turn = geometry.lengths(slopes(stream.orientations[part], half))
         turning[part] = 2.0 * turn * rate_hz
     return speed, turning
 
@@ -273,7 +284,7 @@ def rests_at(
     stream: Stream, frames: slice, stay: RestPose, floor: Floor
 ) -> Bool[np.ndarray, "some"]:
     """Whether an object is at a place within a floor, at each of some frames; not where lost."""
-    distance = np.linalg.norm(stream.positions[frames] - stay.position, axis=1)
+    distance = geometry.lengths(stream.positions[frames] - stay.position)
     angle = geometry.angle_between(stream.orientations[frames], stay.orientation[None])
     with np.errstate(invalid="ignore"):
         return np.asarray((distance <= floor.position_m) & (angle <= floor.rotation_rad))
@@ -295,21 +306,13 @@ def resting(poses: Poses, thresholds: Thresholds) -> tuple[Interval, ...]:
     A body that stirs a little within the floor of motion of its place rests on; its last
     millimetres of settling and its first of leaving are motion.
     """
-    known = _RESTING.setdefault(poses, {})
-    if thresholds not in known:
-        known[thresholds] = tuple(_resting(poses, thresholds))
-    return known[thresholds]
-
-
-_RESTING: WeakKeyDictionary[Poses, dict[Thresholds, tuple[Interval, ...]]] = WeakKeyDictionary()
-"""These intervals, by poses: each contact of a hand asks for them."""
+    return _kept(poses, (resting, thresholds), lambda: tuple(_resting(poses, thresholds)))
 
 
 def _resting(poses: Poses, thresholds: Thresholds) -> list[Interval]:
-    stream = poses.smooth
-    rate_hz = frame_rate(stream.times)
+    rate_hz = frame_rate(poses.smooth.times)
     floor = motion_floor(poses.noise, rate_hz, own_m=None, thresholds=thresholds)
-    calm = slow_frames(stream, poses.noise, rate_hz, thresholds)
+    calm = _calm(poses, thresholds)
     found: list[Interval] = []
     for rest in rest_poses(poses, floor, thresholds):
         first, last = rest.interval

@@ -100,8 +100,8 @@ def _parts(body: BodyGeometry, span: slice, rate_hz: float, thresholds: Threshol
     """The phases of one stretch of known frames, however short they are."""
     half = max(1, round(0.5 * thresholds.rest_window_s * rate_hz))
     way = slopes(body.middles[span], half) * rate_hz
-    turn = 2.0 * np.linalg.norm(slopes(body.poses.smooth.orientations[span], half), axis=1)
-    slow = np.linalg.norm(way, axis=1) < thresholds.rest_speed_mps
+    turn = 2.0 * geometry.lengths(slopes(body.poses.smooth.orientations[span], half))
+    slow = geometry.lengths(way) < thresholds.rest_speed_mps
     if slow.all():
         turning = bool((turn * rate_hz >= thresholds.rest_speed_radps).any())
         return [Phase(TURNING if turning else STILL, span.start, span.stop - 1)]
@@ -188,9 +188,9 @@ def rolling(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:
     turns = angular_velocity(stream.orientations, stream.times)
     arm = np.zeros_like(goes)
     arm[:, 2] = body.boxes[0][:, 2] - body.middles[:, 2]
-    pace = np.linalg.norm(goes, axis=1)
-    slip = np.linalg.norm(goes + np.cross(turns, arm), axis=1)
-    level = np.linalg.norm(turns[:, :2], axis=1)
+    pace = geometry.lengths(goes)
+    slip = geometry.lengths(goes + np.cross(turns, arm))
+    level = geometry.lengths(turns[:, :2])
     with np.errstate(invalid="ignore"):
         # The middle goes, the axis lies, and the point below the middle stays behind.
         holds = (pace > thresholds.rest_speed_mps) & (slip <= thresholds.slip_share * pace)
@@ -202,7 +202,7 @@ def rolling(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:
         minimum_s=thresholds.contact_minimum_s,
     )
     # What is not known adds nothing to the angle turned so far.
-    rate = np.nan_to_num(np.linalg.norm(turns, axis=1))
+    rate = np.nan_to_num(geometry.lengths(turns))
     steps = 0.5 * (rate[1:] + rate[:-1]) * np.diff(stream.times)
     angle = np.concatenate(([0.0], np.cumsum(steps)))
     return tuple(
@@ -236,7 +236,7 @@ def leaning(body: BodyGeometry, upright: Vector, thresholds: Thresholds) -> tupl
     stream = body.poses.smooth
     angle = lean(stream.orientations, upright)
     pace = derivative(angle, stream.times)
-    speed = np.linalg.norm(derivative(body.middles, stream.times), axis=1)
+    speed = geometry.lengths(derivative(body.middles, stream.times))
     with np.errstate(invalid="ignore"):
         far = angle > thresholds.lean_rad
         over, back = pace >= thresholds.rest_speed_radps, pace <= -thresholds.rest_speed_radps
@@ -327,7 +327,7 @@ def lengthwise(
         part = slice(first, last + 1)
         steps = np.diff(body.poses.smooth.positions[part], axis=0)
         lengths = (body.turns_at(part) @ axis)[:-1]
-        way = np.nansum(np.linalg.norm(steps, axis=1))
+        way = np.nansum(geometry.lengths(steps))
         along = np.nansum(np.abs(np.einsum("ij,ij->i", steps, lengths)))
         if way > 0.0 and along / way >= least:
             out.append((first, last))

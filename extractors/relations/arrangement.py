@@ -105,7 +105,7 @@ class Pair:
         local = points @ turns + offset
         out = np.full(local.shape[:2], np.inf)
         half = 0.5 * self.other.shape.size if self.other.shape else np.zeros(3)
-        boxed = (np.abs(local) <= half + 1e-9).all(axis=2)
+        boxed = geometry.every(np.abs(local) <= half + 1e-9)
         candidates = local[boxed]
         heights = np.empty(len(candidates))
         for start in range(0, len(candidates), BLOCK_POINTS):
@@ -172,7 +172,7 @@ def along(pair: Pair) -> Holds:
     near = np.flatnonzero(pair.near)
     axis = other.turns_at(near)[:, :, int(np.argmax(other.shape.size))]
     step = derivative(body.middles, body.poses.smooth.times)[near]
-    pace = np.linalg.norm(step, axis=1)
+    pace = geometry.lengths(step)
     with np.errstate(invalid="ignore"):
         straight = np.abs(np.einsum("ij,ij->i", step, axis)) >= np.cos(thresholds.along_rad) * pace
         out[near] = straight & (pace > thresholds.rest_speed_mps)
@@ -186,8 +186,8 @@ def between(body: BodyGeometry, one: BodyGeometry, other: BodyGeometry) -> Holds
         share = np.einsum("ij,ij->i", body.middles - one.middles, line) / np.einsum(
             "ij,ij->i", line, line
         )
-        off = np.linalg.norm(body.middles - one.middles - share[:, None] * line, axis=1)
-        wide = min(float(np.linalg.norm(each.corners, axis=1).max()) for each in (one, other))
+        off = geometry.lengths(body.middles - one.middles - share[:, None] * line)
+        wide = min(float(geometry.lengths(each.corners).max()) for each in (one, other))
         tube = np.flatnonzero((share > 0.0) & (share < 1.0) & (off <= wide))
     out = np.zeros(len(share), dtype=bool)
     out[tube] = ~_holds(one, body.middles, tube) & ~_holds(other, body.middles, tube)
@@ -201,7 +201,7 @@ def boxes_apart(
     low, high = (ends[frames] for ends in body.boxes)
     bottom, top = (ends[frames] for ends in other.boxes)
     outside = np.maximum(np.maximum(low - top, bottom - high), 0.0)
-    return np.asarray(np.linalg.norm(outside, axis=1))
+    return np.asarray(geometry.lengths(outside))
 
 
 def sides(body: BodyGeometry, other: BodyGeometry, frames: Int[np.ndarray, "two"]) -> str:
@@ -238,7 +238,7 @@ ARRANGEMENTS: dict[str, Callable[[Pair], Holds]] = {
 def beyond_shadow(point: Places, low: Places, high: Places) -> Series:
     """How far a point is outside a box's shadow on the ground [m]."""
     outside = np.maximum(np.maximum(low - point, point - high), 0.0)
-    return np.asarray(np.linalg.norm(outside[:, :2], axis=1))
+    return np.asarray(geometry.lengths(outside[:, :2]))
 
 
 def _holds(
@@ -246,7 +246,7 @@ def _holds(
 ) -> Bool[np.ndarray, "some"]:
     low, high = (ends[frames] for ends in box.boxes)
     some = points[frames]
-    return np.asarray(((some >= low) & (some <= high)).all(axis=1))
+    return geometry.every((some >= low) & (some <= high))
 
 
 SAMPLES = 5
@@ -313,7 +313,7 @@ def _strays(carrier: Stream, thing: Stream, edge: int, margin_m: float) -> Frame
     def strays(some: slice) -> Bool[np.ndarray, "some"]:
         places = in_either_frame(carrier, thing, some)
         pairs = zip(places, then, strict=True)
-        ways = [np.linalg.norm(place - at_edge, axis=1) for place, at_edge in pairs]
+        ways = [geometry.lengths(place - at_edge) for place, at_edge in pairs]
         return ~np.asarray(np.minimum(*ways) <= margin_m)
 
     return strays

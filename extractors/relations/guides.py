@@ -117,16 +117,14 @@ def fit_rail(body: BodyGeometry) -> GuideFit | None:
     if axis is None:
         return None
     course = (middles - mean) @ axis
-    stray_m = np.linalg.norm(middles - mean - course[:, None] * axis, axis=1)
-    usual = geometry.quaternions(geometry.rotations(turns).mean())
+    stray_m = geometry.lengths(middles - mean - course[:, None] * axis)
+    usual = geometry.mean_orientation(turns)
     measured = course, stray_m, geometry.angle_between(turns, usual[None])
     return _fitted(RAIL, body, known, axis, mean, measured)
 
 
 def _known(body: BodyGeometry) -> Holds:
-    return np.asarray(
-        ~(np.isnan(body.middles).any(axis=1) | np.isnan(body.orientations).any(axis=1))
-    )
+    return np.asarray(geometry.is_known(body.middles) & geometry.is_known(body.orientations))
 
 
 def _main_direction(vectors: Float[np.ndarray, "known 3"]) -> Vector | None:
@@ -150,7 +148,7 @@ def _fitted(
     columns = np.full((len(measured), len(known)), np.nan)
     columns[:, known] = measured
     course, stray_m, stray_rad = columns
-    lever_m = float(np.linalg.norm(body.corners, axis=1).max())
+    lever_m = float(geometry.lengths(body.corners).max())
     return GuideFit(kind, axis, point, course, stray_m, stray_rad, lever_m)
 
 
@@ -290,7 +288,7 @@ def _volume(each: TagObject) -> float:
 def _stays_near(one: BodyGeometry, other: BodyGeometry, thresholds: Thresholds) -> bool:
     """Whether the boxes of two bodies are never farther apart than a hinge's leaf."""
     (low, high), (below, above) = one.boxes, other.boxes
-    gaps = np.linalg.norm(np.maximum(np.maximum(low - above, below - high), 0.0), axis=1)
+    gaps = geometry.lengths(np.maximum(np.maximum(low - above, below - high), 0.0))
     with np.errstate(invalid="ignore"):
         return not (gaps > thresholds.hinge_near_m).any() and not one.poses.rests
 
@@ -421,7 +419,7 @@ def _course_by_shapes(
 
     def meets(end: int, beyond: float) -> bool:
         arms = Rotation.from_rotvec(beyond * fit.axis).apply(_points(body, end) - fit.point)
-        levers = np.linalg.norm(np.cross(arms, fit.axis), axis=1)
+        levers = geometry.lengths(np.cross(arms, fit.axis))
         outer = fit.point + arms[levers >= thresholds.outer_share * levers.max()]
         gap_m = float(np.median(np.maximum(_outside(outer, base, end), 0.0)))
         return gap_m <= thresholds.closed_gap_share * levers.max()

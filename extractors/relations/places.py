@@ -84,7 +84,7 @@ def places(
         return
     way, turn, spin = turned_and_gone(body, since)
     at = np.asarray(frames)
-    at = at[~np.isnan(body.middles[at]).any(axis=1)]
+    at = at[geometry.is_known(body.middles[at])]
     middles = _thousandths(body.middles[at])
     ways = _thousandths(np.stack([way[at], turn[at]], axis=1))
     postures = np.stack([lean(body.orientations[at], upright), spin[at]], axis=1)
@@ -107,7 +107,7 @@ def trunk_places(
         return
     at = np.asarray(frames)
     places_m = from_trunk(body, trunk, upright)[at]
-    known = ~np.isnan(places_m).any(axis=1)
+    known = geometry.is_known(places_m)
     for frame, place in zip(at[known].tolist(), _thousandths(places_m[known]), strict=True):
         yield TrunkPlace(body.name, frame, *place)
 
@@ -129,7 +129,7 @@ def distances(
         return
     gone_about = wound(body, other, since)
     at = np.asarray(frames)
-    apart = np.linalg.norm((body.middles - other.middles)[at], axis=1)
+    apart = geometry.lengths((body.middles - other.middles)[at])
     known = ~np.isnan(apart)
     values = _thousandths(np.stack([apart[known], gone_about[at[known]]], axis=1))
     swept = [milliradians for _, milliradians in values]
@@ -147,7 +147,7 @@ def turned_and_gone(
     body: BodyGeometry, since: Sums = FROM_THE_BEGINNING
 ) -> tuple[Series, Series, Series]:
     """Path [m], rotation [rad] and turn about the vertical [rad] up to each frame."""
-    steps = np.linalg.norm(np.diff(body.middles, axis=0), axis=1)
+    steps = geometry.lengths(np.diff(body.middles, axis=0))
     angles = geometry.angle_between(body.orientations[1:], body.orientations[:-1])
     parts = (steps, angles, spin_steps(body.orientations))
     way, turn, spin = (

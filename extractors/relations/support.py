@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
+from capar.model import geometry
 from capar.model.calibration import Calibration
 from capar.model.capture import Capture, Sensor
 from capar.model.facts import Bears, Displaced, Fact, Seated, Touching
@@ -93,7 +94,7 @@ def share_of_first(
     """
     out = np.where(first_down, 1.0, np.where(second_down, 0.0, np.nan))
     line = (second - first)[:, :2]
-    apart = np.linalg.norm(line, axis=1)
+    apart = geometry.lengths(line)
     both = first_down & second_down
     out[np.isnan(apart)] = np.nan
     if middle is None:
@@ -104,7 +105,7 @@ def share_of_first(
         between = np.clip(along, 0.0, 1.0)
         out = np.where(both, 1.0 - between, out)
         base = first[:, :2] + np.where(both, between, 1.0 - out)[:, None] * line
-        off = np.linalg.norm(middle[:, :2] - base, axis=1)
+        off = geometry.lengths(middle[:, :2] - base)
         unknown = (both & ~(apart >= thresholds.feet_apart_m)) | (off > thresholds.off_feet_m)
     out[unknown | (both & np.isnan(off))] = np.nan
     return np.asarray(out)
@@ -183,8 +184,8 @@ def _goes_along(
             return False
     if all(contained):
         return True
-    stray = float(np.linalg.norm(own - own[0], axis=1).max())
-    way = float(np.linalg.norm(bearer.middles[part] - bearer.middles[first], axis=1).max())
+    stray = float(geometry.lengths(own - own[0]).max())
+    way = float(geometry.lengths(bearer.middles[part] - bearer.middles[first]).max())
     return stray <= max(thresholds.motion_floor_m, thresholds.ride_share * way)
 
 

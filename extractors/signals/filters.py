@@ -81,7 +81,7 @@ def lowpass(
 def lowpass_orientations(orientations: Turns, times: Series, thresholds: Thresholds) -> Turns:
     """Unit quaternions of continuous sign without what is faster than the cutoff."""
     smooth = lowpass(orientations, times, thresholds)
-    return np.asarray(smooth / np.linalg.norm(smooth, axis=1, keepdims=True))
+    return np.asarray(smooth / geometry.lengths(smooth)[:, None])
 
 
 @lru_cache(maxsize=64)
@@ -104,7 +104,7 @@ def gains(rate_hz: float, thresholds: Thresholds) -> tuple[float, float, float]:
 
 def speed(positions: Places, times: Series) -> Series:
     """Length of the velocity by central differences [m/s]; NaN where a position is unknown."""
-    return np.linalg.norm(velocity(positions, times), axis=1)
+    return geometry.lengths(velocity(positions, times))
 
 
 def velocity(positions: Places, times: Series) -> Places:

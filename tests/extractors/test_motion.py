@@ -18,7 +18,7 @@ from capar.model.capture import Shape, Stream, TagObject, TagType
 from capar.model.facts import Rolls
 from capar.pipelines.observation import observe
 from extractors.bodies.bodies import BodyGeometry, geometry_of
-from extractors.bodies.poses import Poses, poses_of
+from extractors.bodies.poses import Poses, median_pose, poses_of
 from extractors.contact.contacts import settled_ends
 from extractors.measure import _track
 from extractors.motion.motion_edges import (
@@ -31,7 +31,14 @@ from extractors.motion.motion_edges import (
     seat,
     way_out,
 )
-from extractors.motion.object_motion import Floor, RestPose, motion_floor, moving, rest_poses
+from extractors.motion.object_motion import (
+    Floor,
+    RestPose,
+    first_rest,
+    motion_floor,
+    moving,
+    rest_poses,
+)
 from extractors.motion.phases import (
     LEVEL,
     RISING,
@@ -463,6 +470,24 @@ def true_edges_geometry(positions: np.ndarray) -> BodyGeometry:
     turns[np.isnan(positions).any(axis=1)] = np.nan
     stream = Stream(TRUE_EDGES_TIMES, positions, turns)
     return geometry_of(TagObject("thing", TagType.MOBILE, stream, None), LIMITS)
+
+
+@given(seed=st.integers(0, 999), pace=st.floats(0.0, 0.08))
+@settings(max_examples=20)
+def test_the_first_rest_is_the_first_of_all_and_a_median_is_numpys(seed: int, pace: float) -> None:
+    random = np.random.default_rng(seed)
+    walk = np.cumsum(random.normal(0.0, pace * 0.01, (len(TRUE_EDGES_TIMES), 3)), axis=0)
+    poses = true_edges_geometry(walk).poses
+    every = rest_poses(poses, FLOOR, LIMITS)
+    first = first_rest(true_edges_geometry(walk).poses, FLOOR, LIMITS)
+    assert (first is None) == (not every)
+    if first:
+        assert first.interval == every[0].interval
+        assert np.array_equal(first.position, every[0].position)
+    place, _ = median_pose(poses.smooth, slice(0, 1 + seed % 40))
+    some = poses.smooth.positions[: 1 + seed % 40]
+    near = np.linalg.norm(some - np.median(some, axis=0), axis=1)
+    assert np.array_equal(place, some[near <= np.median(near)].mean(axis=0))
 
 
 def true_edges_edges(positions: np.ndarray) -> tuple[float, float]:

@@ -187,6 +187,28 @@ def test_the_angle_between_is_the_angle_turned(seed: int, angle: float) -> None:
     assert np.allclose(geometry.angle_between(first, -second), angle, atol=1e-6)
 
 
+@given(seed=seeds, count=st.integers(1, 300), axes=st.integers(1, 7), lost=st.integers(0, 3))
+def test_lengths_and_known_rows_are_numpys_to_the_last_bit(
+    seed: int, count: int, axes: int, lost: int
+) -> None:
+    random = np.random.default_rng(seed)
+    vectors = random.normal(size=(count, axes)) * 10.0 ** random.integers(-3, 3, (count, 1))
+    vectors[random.integers(0, count, lost), random.integers(0, axes, lost)] = np.nan
+    for layout in (vectors, np.asfortranarray(vectors), vectors[::-1]):
+        expected = np.linalg.norm(layout, axis=1)
+        assert np.array_equal(geometry.lengths(layout), expected, equal_nan=True)
+        assert np.array_equal(geometry.is_known(layout), ~np.isnan(layout).any(axis=1))
+        assert np.array_equal(geometry.every(layout > 0.0), (layout > 0.0).all(axis=1))
+
+
+@given(seed=seeds, count=st.integers(1, 300))
+def test_the_mean_orientation_is_scipys(seed: int, count: int) -> None:
+    spread = Rotation.from_rotvec(0.3 * np.random.default_rng(seed).normal(size=(count, 3)))
+    near = spread * geometry.rotations(turns(seed, 1)[0])
+    mean = geometry.mean_orientation(geometry.quaternions(near))
+    assert np.allclose(mean, geometry.quaternions(near.mean()), rtol=0.0, atol=1e-12)
+
+
 @given(seeds)
 def test_fit_rigid_finds_the_transform_that_moved_the_markers(seed: int) -> None:
     random = np.random.default_rng(seed)
