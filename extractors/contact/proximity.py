@@ -19,8 +19,11 @@ from extractors.signals.intervals import Interval
 EXACTNESS_M = 0.00004
 """By so much less than its slack an answer is carried to later poses [m]."""
 
-MOST_POSES, FEWEST_POSES = 8192, 32
-"""Most and fewest poses that one answer is carried to at once [1]."""
+POSES, MOST_POSES = 64, 8192
+"""Poses that are decided together, and the most that one answer is carried on to at once [1]."""
+
+KEPT_ANSWERS = 128
+"""How many of the latest answers are carried to later poses [1]."""
 
 _UNKNOWN, _APART, _TOUCHES = 0, 1, 2
 
@@ -35,53 +38,105 @@ def sweep(
 ) -> Bool[np.ndarray, "poses"]:
     """Whether the second surface comes within a distance of the first, at each pose.
 
-    One query decides later poses, too (conservative advancement): bodies that are apart stay so
-    until some point may have moved as far; bodies that touch do while a point of contact has not.
+    One query decides other poses, too: bodies that are apart stay so where no point may have moved
+    as far (conservative advancement), and touch where their nearest points are near enough. Poses
+    return, as those of a grasp do and those of a hand that waits, so that earlier answers are asked
+    before the surfaces are.
 
     ``turns``: rotation matrices of ``T_first_second``. ``places``: its places [m]. ``distance_m``:
     distance up to which they touch [m].
     """
-    known = np.zeros(len(places), dtype=np.int8)
-    flat = turns.reshape(-1, 9)
-    if first.radius < second.radius:
-        back = np.swapaxes(turns, 1, 2)
-        centres = (back @ (first.centre - places)[..., None])[..., 0]
-    else:
-        centres = turns @ second.centre + places
-    # Half of a rotation's chord: the distance of matrices is sqrt(8) sin(angle / 2).
-    arm = min(first.radius, second.radius) / np.sqrt(2.0)
-    index = 0
+    answers = _Answers(first, second, turns, places, distance_m)
+    known, index = answers.known, 0
     while index < len(known):
-        point, slack_m = _touch(first, second, turns[index], places[index], distance_m)
-        answer = _APART if point is None else _TOUCHES
-        known[index] = answer
-        begin, length = index + 1, FEWEST_POSES
-        while begin < len(known):
-            part = slice(begin, begin + length)
-            if point is None:
-                moved = np.linalg.norm(centres[part] - centres[index], axis=1)
-                moved += arm * np.linalg.norm(flat[part] - flat[index], axis=1)
-            else:
-                own = turns[index].T @ (point - places[index])
-                moved = np.linalg.norm(turns[part] @ own + (places[part] - point), axis=1)
-            known[part][moved < slack_m] = answer
+        window = slice(index, min(index + POSES, len(known)))
+        answers.carry(window, slice(min(answers.count, KEPT_ANSWERS)))
+        while (unknown := np.flatnonzero(known[window] == _UNKNOWN)).size:
+            # The middle one: its answer holds before it and after it.
+            answers.ask(index + int(unknown[len(unknown) // 2]))
+            answers.carry(window, answers.latest)
+        index, length = window.stop, POSES
+        while index < len(known):
+            part = slice(index, min(index + length, len(known)))
+            answers.carry(part, answers.latest)
             unknown = known[part] == _UNKNOWN
             if unknown.any():
-                begin += int(unknown.argmax())
+                index += int(unknown.argmax())
                 break
-            begin, length = begin + length, min(2 * length, MOST_POSES)
-        index = begin
-    return known == _TOUCHES
+            index, length = part.stop, min(2 * length, MOST_POSES)
+    return np.asarray(known == _TOUCHES)
+
+
+class _Answers:
+    """What is known of two surfaces at each pose, and the latest answers of which."""
+
+    def __init__(
+        self,
+        first: Surface,
+        second: Surface,
+        turns: Float[np.ndarray, "poses 3 3"],
+        places: Float[np.ndarray, "poses 3"],
+        distance_m: float,
+    ) -> None:
+        """Nothing is known yet."""
+        self.first, self.second = first, second
+        self.turns, self.places, self.distance_m = turns, places, distance_m
+        self.known, self.count = np.zeros(len(places), dtype=np.int8), 0
+        if first.radius < second.radius:
+            back = np.swapaxes(turns, 1, 2)
+            self.centres = (back @ (first.centre - places)[..., None])[..., 0]
+        else:
+            self.centres = turns @ second.centre + places
+        # Half of a rotation's chord: the distance of matrices is sqrt(8) sin(angle / 2).
+        self.arm = min(first.radius, second.radius) / np.sqrt(2.0)
+        self.poses = np.zeros(KEPT_ANSWERS, dtype=int)
+        self.slack_m = np.zeros(KEPT_ANSWERS)
+        self.nearest = np.full((2, KEPT_ANSWERS, 3), np.nan)
+
+    @property
+    def latest(self) -> slice:
+        """The place of the latest answer among those that are kept."""
+        place = (self.count - 1) % KEPT_ANSWERS
+        return slice(place, place + 1)
+
+    def ask(self, pose: int) -> None:
+        """Ask the surfaces at a pose."""
+        apart, *nearest = _touch(self.first, self.second, self.turns[pose], self.places[pose])
+        self.count += 1
+        self.poses[self.latest] = pose
+        self.slack_m[self.latest] = apart - self.distance_m - EXACTNESS_M
+        self.nearest[:, self.latest.start] = nearest
+        self.known[pose] = _APART if apart > self.distance_m else _TOUCHES
+
+    def carry(self, part: slice, some: slice) -> None:
+        """Decide poses of a part, as far as some of the answers do."""
+        poses = part.start + np.flatnonzero(self.known[part] == _UNKNOWN)
+        if not poses.size:
+            return
+        on_first, on_second = self.nearest[:, some]
+        between = self.turns[poses] @ on_second.T + self.places[poses][:, :, None] - on_first.T
+        meets = np.sqrt(np.einsum("pik,pik->pk", between, between))
+        meets = (meets <= self.distance_m - EXACTNESS_M).any(axis=1)
+        self.known[poses[meets]] = _TOUCHES
+        asked, slack_m = self.poses[some], self.slack_m[some]
+        far = slack_m > 0.0
+        asked, slack_m = asked[far], slack_m[far]
+        offset = self.centres[poses][:, None] - self.centres[asked]
+        moved = np.sqrt(np.einsum("pki,pki->pk", offset, offset))
+        flat = self.turns.reshape(-1, 9)
+        then, there = flat[poses], flat[asked]
+        squares = (then**2).sum(axis=1)[:, None] + (there**2).sum(axis=1)
+        moved += self.arm * np.sqrt(np.maximum(squares - 2.0 * then @ there.T, 0.0))
+        self.known[poses[(moved < slack_m).any(axis=1)]] = _APART
 
 
 def _touch(
-    first: Surface,
-    second: Surface,
-    turn: Float[np.ndarray, "3 3"],
-    place: Vector,
-    distance_m: float,
-) -> tuple[Vector | None, float]:
-    """A point of the second within the distance, and how far it may move [m] before it is not."""
+    first: Surface, second: Surface, turn: Float[np.ndarray, "3 3"], place: Vector
+) -> tuple[float, Vector, Vector]:
+    """Distance of two surfaces [m], and a point of each that is as near, in its own frame [m].
+
+    Where they cut each other the distance is zero and the points are one; NaN where none is known.
+    """
     one, two = fcl.CollisionObject(first.tree), fcl.CollisionObject(second.tree)
     two.setTransform(fcl.Transform(turn, place))
     result = fcl.CollisionResult()
@@ -89,11 +144,12 @@ def _touch(
     if fcl.collide(one, two, fcl.CollisionRequest(enable_contact=True), result):
         found = result.contacts[0]
         moved = second.triangles[[found.b2]] @ turn.T + place
-        return meeting_points(first.triangles[[found.b1]], moved)[0], distance_m - EXACTNESS_M
-    apart, _, on_second = _apart(first, second, turn, place)
-    if apart > distance_m:
-        return None, apart - distance_m - EXACTNESS_M
-    return on_second, distance_m - apart - EXACTNESS_M if apart > 0.0 else 0.0
+        point = meeting_points(first.triangles[[found.b1]], moved)[0]
+        return 0.0, point, turn.T @ (point - place)
+    apart, on_first, on_second = _apart(first, second, turn, place)
+    if apart <= 0.0:
+        return 0.0, on_first, np.full(3, np.nan)
+    return apart, on_first, turn.T @ (on_second - place)
 
 
 @dataclass(frozen=True, eq=False)
