@@ -228,8 +228,16 @@ def _unknown(kind: str, iri: str) -> str:
     return f"The ontology has no {kind} capar:{name}.{hint}"
 
 
+_AGREEING = frozenset(
+    {CAPAR.duration, CAPAR.frames, CAPAR.firstFrame, CAPAR.lastFrame, CAPAR.frame, CAPAR.size}
+)
+"""Properties of which one at least is of each two that may not agree."""
+
+
 def _contradictions(said: Properties, capture: Properties) -> Iterator[str]:
     """Durations, times, frames and sizes that do not agree, by the rate of the capture."""
+    if said.keys().isdisjoint(_AGREEING):
+        return
     start, end, lasts = (_first(said, e) for e in (CAPAR.start, CAPAR.end, CAPAR.duration))
     if abs(lasts - (end - start)) > max(1e-6, 1e-6 * abs(lasts)):
         yield f"It lasts from {start:g} to {end:g} s, which is not {lasts:g} s."
