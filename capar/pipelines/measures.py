@@ -243,7 +243,7 @@ def _placed(known: Measures, asked: Measured, frames: Frames) -> Series:
     bars = known.bars(Lies, body=asked.bodies[0], how=how, other=asked.bodies[1])
     if how == "inside":
         limit = MILLI * limits.inside_stays_share
-        return Series(frames, MILLI * pair.shares[0][frames], (limit,), bars, how)
+        return Series(frames, MILLI * pair.shares(frames)[0], (limit,), bars, how)
     rise = MILLI * (pair.body.middles[:, 2] - pair.other.boxes[1][:, 2])
     return Series(frames, rise[frames], (), bars, how)
 

@@ -78,9 +78,12 @@ class BodyGeometry:
         A hull of very many sides, as of a scan, is described by the planes that lean on it from
         directions all around, which stand off it by no more than a hundredth of its size.
         """
-        if self.shape is None:
-            return None
-        return once(_PLANES, self.shape, _planes)
+        return None if self.shape is None else once(_HULLS, self.shape, _hull)[0]
+
+    @property
+    def volume_m3(self) -> float:
+        """The volume of its convex hull [m3]; zero without one."""
+        return 0.0 if self.shape is None else once(_HULLS, self.shape, _hull)[1]
 
     @cached_property
     def boxes(self) -> tuple[Places, Places]:
@@ -123,7 +126,8 @@ def _directions() -> Float[np.ndarray, "directions 3"]:
 
 
 _CORNERS: WeakKeyDictionary[Shape, Float[np.ndarray, "corners 3"]] = WeakKeyDictionary()
-_PLANES: WeakKeyDictionary[Shape, Float[np.ndarray, "planes 4"] | None] = WeakKeyDictionary()
+_Hull = tuple[Float[np.ndarray, "planes 4"] | None, float]
+_HULLS: WeakKeyDictionary[Shape, _Hull] = WeakKeyDictionary()
 """Of shapes that were asked for before: every window of a live recording asks again."""
 
 _Found = TypeVar("_Found")
@@ -148,16 +152,16 @@ def _corners(shape: Shape) -> Float[np.ndarray, "corners 3"]:
     return np.asarray(points[np.unique(best)])
 
 
-def _planes(shape: Shape) -> Float[np.ndarray, "planes 4"] | None:
+def _hull(shape: Shape) -> _Hull:
     points = np.asarray(shape.vertices) - shape.bounds.mean(axis=0)
     try:
-        equations = ConvexHull(points).equations
+        hull = ConvexHull(points)
     except (QhullError, ValueError):
-        return None
-    planes = np.unique(equations.round(6), axis=0)
-    if len(planes) <= len(AROUND):
-        return np.asarray(planes)
-    return np.hstack([AROUND, -(points @ AROUND.T).max(axis=0)[:, None]])
+        return None, 0.0
+    planes = np.unique(hull.equations.round(6), axis=0)
+    if len(planes) > len(AROUND):
+        planes = np.hstack([AROUND, -(points @ AROUND.T).max(axis=0)[:, None]])
+    return planes, float(hull.volume)
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 import trimesh
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 from capar.model import geometry
@@ -23,37 +23,58 @@ from extractors.signals.intervals import frame_rate, mask
 from extractors.thresholds import Thresholds
 
 Points = Places
+Some = Int[np.ndarray, "some"] | Holds
 
 
-def travelling(stream: Stream, thresholds: Thresholds) -> Holds:
-    """Where a body covers some way in the world within the window of co-motion."""
-    return spread(stream.positions, stream, thresholds) >= thresholds.co_motion_way_m
+class Journey:
+    """Where a thing covers some way in the world, and who it goes with; many are asked of one."""
 
-
-def steady_in(carrier: Stream, thing: Stream, thresholds: Thresholds) -> Holds:
-    """Where a thing covers some way in the world and stays where it is in a carrier's frame.
-
-    Or the carrier stays where it is in the thing's frame, as a hand does that takes a large thing
-    by its rim and tips it: its origin, far from the hand, then strays in the hand's frame. Steady
-    means that it strays there by no more than a centimetre, or by no more than a share of
-    its way through the world, within the window of co-motion.
-
-    Only where it travels, and half a window about, are its places in the other's frame asked for.
-    """
-    way = spread(thing.positions, thing, thresholds)
-    out = np.zeros(len(way), dtype=bool)
-    reach = _half_window(thing, thresholds)
-    with np.errstate(invalid="ignore"):
-        travels = np.asarray(way >= thresholds.co_motion_way_m)
-    wide = maximum_filter1d(travels.view(np.uint8), 2 * reach + 1, mode="nearest")
-    for begin, end in geometry.runs(wide.astype(bool)):
-        some = slice(begin, end + 1)
-        places = in_either_frame(carrier, thing, some)
-        stray = np.minimum(*(spread(each, thing, thresholds) for each in places))
-        limit = np.maximum(thresholds.co_motion_stray_m, thresholds.co_motion_share * way[some])
+    def __init__(self, thing: Stream, thresholds: Thresholds) -> None:
+        """Seek where it travels, within the window of co-motion about each frame."""
+        self.thing, self.thresholds = thing, thresholds
+        self.way = spread(thing.positions, thing, thresholds)
         with np.errstate(invalid="ignore"):
-            out[some] = travels[some] & (stray <= limit)
-    return out
+            self.travels = np.asarray(self.way >= thresholds.co_motion_way_m)
+
+    @cached_property
+    def _asked(self) -> tuple[Int[np.ndarray, "some"], Holds]:
+        """The frames in which it travels, and half a window about, run by run; and which are these.
+
+        Before and after each run its first and last frame stand as often as a window reaches, so
+        that what is filtered of one run is not of the next.
+        """
+        reach = _half_window(self.thing, self.thresholds)
+        wide = maximum_filter1d(self.travels.view(np.uint8), 2 * reach + 1, mode="nearest")
+        runs = np.array(geometry.runs(wide.astype(bool)), dtype=int).reshape(-1, 2)
+        counts = np.diff(runs, axis=1)[:, 0] + 1 + 2 * reach
+        first, last = np.repeat(runs, counts, axis=0).T
+        begins = np.repeat(np.cumsum(counts) - counts, counts)
+        at = np.arange(len(first)) - begins + first - reach
+        return np.clip(at, first, last), (first <= at) & (at <= last)
+
+    @cached_property
+    def _turns(self) -> Float[np.ndarray, "some 3 3"]:
+        return rotation_matrices(self.thing.orientations[self._asked[0]])
+
+    def steady_in(self, carrier: Stream) -> Holds:
+        """Where the thing covers some way and stays where it is in a carrier's frame.
+
+        Or the carrier stays where it is in the thing's frame, as a hand does that takes a large
+        thing by its rim and tips it: its origin, far from the hand, then strays in the hand's
+        frame. Steady means that it strays there by no more than a centimetre, or by no more than a
+        share of its way through the world, within the window of co-motion.
+        """
+        out, (some, own) = np.zeros(len(self.way), dtype=bool), self._asked
+        offset = self.thing.positions[some] - carrier.positions[some]
+        turns = rotation_matrices(carrier.orientations[some])
+        places = (np.einsum("fji,fj->fi", each, offset) for each in (turns, self._turns))
+        stray = np.minimum(*(spread(each, self.thing, self.thresholds)[own] for each in places))
+        most, share = self.thresholds.co_motion_stray_m, self.thresholds.co_motion_share
+        frames = some[own]
+        with np.errstate(invalid="ignore"):
+            steady = stray <= np.maximum(most, share * self.way[frames])
+        out[frames] = self.travels[frames] & steady
+        return out
 
 
 def in_either_frame(one: Stream, other: Stream, some: slice) -> tuple[Points, Points]:
@@ -75,12 +96,13 @@ def spread(points: Points, stream: Stream, thresholds: Thresholds) -> Series:
     """
     size = 2 * _half_window(stream, thresholds) + 1
     lost = ~geometry.is_known(points)
-    known = np.where(lost[:, None], 0.0, points)
+    known = np.where(lost[:, None], 0.0, points) if lost.any() else points
     high = maximum_filter1d(known, size, axis=0, mode="nearest")
     low = minimum_filter1d(known, size, axis=0, mode="nearest")
     out = geometry.lengths(high - low)
-    unknown = maximum_filter1d(lost.astype(np.uint8), size, mode="nearest").astype(bool)
-    return np.where(unknown, np.nan, out)
+    if lost.any():
+        out[maximum_filter1d(lost.view(np.uint8), size, mode="nearest").astype(bool)] = np.nan
+    return out
 
 
 def _half_window(stream: Stream, thresholds: Thresholds) -> int:
@@ -98,9 +120,9 @@ class TouchPoints:
     first: Vector = (0.0, 0.0, 0.0)
     second: Vector = (0.0, 0.0, 0.0)
 
-    def apart(self, first: Stream, second: Stream) -> Series:
-        """Distance of the two points [m]; NaN where either body is lost."""
-        return np.asarray(geometry.lengths(_at(first, self.first) - _at(second, self.second)))
+    def apart(self, first: Stream, second: Stream, some: Some | slice = slice(None)) -> Series:
+        """Distance of the two points at some frames [m]; NaN where either body is lost."""
+        return geometry.lengths(_at(first, self.first, some) - _at(second, self.second, some))
 
 
 def touch_points(
@@ -123,8 +145,9 @@ def touch_points(
     return TouchPoints((found[0], found[1], found[2]), (found[3], found[4], found[5]))
 
 
-def _at(stream: Stream, point: Vector) -> Places:
-    return np.asarray(stream.positions + rotation_matrices(stream.orientations) @ np.array(point))
+def _at(stream: Stream, point: Vector, some: Some | slice) -> Places:
+    turns = rotation_matrices(stream.orientations[some])
+    return np.asarray(stream.positions[some] + turns @ np.array(point))
 
 
 HAND = "hand"
@@ -146,13 +169,13 @@ class Evidence:
         """By end-effector and mobile object, where it surely carries the object."""
         out = {}
         for thing in self._mobile:
-            ways = travelling(thing.poses.settled, self.thresholds)
-            least = self.thresholds.co_motion_least * max(int(ways.sum()), 1)
+            journey = Journey(thing.poses.settled, self.thresholds)
+            least = self.thresholds.co_motion_least * max(int(journey.travels.sum()), 1)
             for sensor in self.capture.acting:
                 carrier = self.bodies.sensors[sensor.name]
                 if carrier.poses is thing.poses:
                     continue
-                frames = steady_in(carrier.poses.settled, thing.poses.settled, self.thresholds)
+                frames = journey.steady_in(carrier.poses.settled)
                 if frames.sum() > least and self._lasts(frames):
                     out[sensor.name, thing.name] = frames
         return out
@@ -313,7 +336,7 @@ def stated_pair(
     limits = evidence.thresholds
     for _, frames in _witnesses(capture, first.name, second.name, evidence):
         if frames.any():
-            apart = TouchPoints().apart(first.poses.settled, second.poses.settled)[frames]
+            apart = TouchPoints().apart(first.poses.settled, second.poses.settled, frames)
             far_m = float(np.quantile(apart, limits.touch_quantile))
             fits = far_m <= distance_m <= far_m + 2.0 * limits.touch_margin_m
             shown_m = None if fits else far_m + limits.touch_margin_m
@@ -382,7 +405,7 @@ def _pair(
     surfaces = first.shape is not None or second.shape is not None
     if not surfaces:
         points = touch_points(first.poses.settled, second.poses.settled, frames, thresholds)
-        apart = points.apart(first.poses.settled, second.poses.settled)[frames]
+        apart = points.apart(first.poses.settled, second.poses.settled, frames)
     else:
         apart = _surface_distances(first, second, frames, SAMPLES)
     touch_m = float(np.quantile(apart, thresholds.touch_quantile)) + margin_m

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Bool, Float
-from scipy.ndimage import correlate1d
+from scipy.ndimage import correlate1d, maximum_filter1d
 
 from capar.model import geometry
 from capar.model.capture import Capture, Conventions
@@ -116,7 +116,10 @@ def _flight(
 def _parabolic(places: Places, noise_m: float, thresholds: Thresholds) -> Iterator[Interval]:
     """Stretches of a path through which its acceleration is the same."""
     taken = np.zeros(len(places), dtype=bool)
-    for width in reversed([each for each in WINDOWS if each <= len(places)]):
+    # A window bends by no more than its places are off the middle of all, squared and summed up.
+    off_m = 1.001 * float(geometry.lengths(places - places.mean(axis=0)).max())
+    least = (thresholds.flight_bend_sigmas * noise_m / off_m) ** 2 if off_m else np.inf
+    for width in reversed([each for each in WINDOWS if least <= each <= len(places)]):
         bend, fits = _bends(places, width, noise_m, thresholds)
         found = sorted(_steady(bend, fits, width, thresholds), key=lambda run: run[0] - run[1])
         for first, last in found:
@@ -130,21 +133,23 @@ def _bends(
     places: Places, width: int, noise_m: float, thresholds: Thresholds
 ) -> tuple[Places, Bool[np.ndarray, "frames"]]:
     """The square term of a cubic fitted about each frame, and where it is all that there is."""
-    basis = _polynomials(width)
+    basis, half = _polynomials(width), width // 2
     centred = places - places.mean(axis=0)
-    terms = [correlate1d(centred, each, axis=0, mode="nearest") for each in basis]
-    bend = geometry.lengths(terms[2])
-    change = geometry.lengths(terms[3])
-    energy = width * correlate1d(centred**2, np.full(width, 1.0 / width), axis=0, mode="nearest")
-    left = (energy - sum(each**2 for each in terms)).sum(axis=1)
-    misfit = np.sqrt(np.maximum(left, 0.0))
-    allowed_m = thresholds.flight_noise_sigmas * noise_m * np.sqrt(3.0 * (width - len(basis)))
+    square = np.asarray(correlate1d(centred, basis[2], axis=0, mode="nearest"))
+    bend = geometry.lengths(square)
     fits = bend >= thresholds.flight_bend_sigmas * noise_m
-    fits &= change <= thresholds.flight_change_share * bend
-    fits &= misfit <= thresholds.flight_change_share * bend + allowed_m
-    fits[: width // 2] = False
-    fits[len(fits) - width // 2 :] = False
-    return np.asarray(terms[2]), fits
+    fits[:half] = fits[len(fits) - half :] = False
+    allowed_m = thresholds.flight_noise_sigmas * noise_m * np.sqrt(3.0 * (width - len(basis)))
+    # Elsewhere other terms need not be known: one window about each such frame is enough.
+    about = np.flatnonzero(maximum_filter1d(fits.view(np.uint8), width))
+    own, near = fits[about], centred[about]
+    terms = [correlate1d(near, each, axis=0)[own] for each in (basis[0], basis[1], basis[3])]
+    energy = width * correlate1d(near**2, np.full(width, 1.0 / width), axis=0)[own]
+    terms.insert(2, square[fits])
+    left = (energy - sum(each**2 for each in terms)).sum(axis=1)
+    misfit, most = np.sqrt(np.maximum(left, 0.0)), thresholds.flight_change_share * bend[fits]
+    fits[fits] = (geometry.lengths(terms[3]) <= most) & (misfit <= most + allowed_m)
+    return square, fits
 
 
 def _steady(

@@ -15,11 +15,10 @@ from capar.model.geometry import Places, Series
 from extractors.bodies.bodies import Bodies, BodyGeometry
 from extractors.contact.proximity import distance
 from extractors.contact.touch_distances import (
+    Journey,
     TouchPoints,
     in_either_frame,
-    steady_in,
     touchable_at,
-    travelling,
 )
 from extractors.signals.filters import derivative, speed
 from extractors.signals.intervals import (
@@ -34,11 +33,15 @@ from extractors.thresholds import Thresholds
 
 Holds = Bool[np.ndarray, "frames"]
 
-BLOCK_VALUES = 1 << 19
-"""How many points are placed at once [1]: 12 MB."""
+BLOCK_VALUES = 1 << 15
+"""How many points are placed at once [1]: few enough for a processor's cache."""
 
 BLOCK_POINTS = 1 << 10
 """How many points are compared with all planes at once [1]: few enough for a processor's cache."""
+
+
+ROUNDED_M = 1e-4
+"""By so much a hull may stick out of its box, as its planes are rounded [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,51 +71,64 @@ class Pair:
         return lasting(comes, stays)
 
     @cached_property
-    def shares(self) -> tuple[Series, Series]:
+    def hull_shares(self) -> tuple[Series, Series]:
+        """The shares at every frame; where the body is surely not ``inside``, one is too low."""
+        frames = np.arange(len(self.body.middles))
+        return self.shares(frames, least=self.thresholds.inside_stays_share)
+
+    def shares(
+        self, frames: Int[np.ndarray, "some"], *, least: float = 0.0
+    ) -> tuple[Float[np.ndarray, "some"], Float[np.ndarray, "some"]]:
         """Shares of the body's points in the other's convex hull, and of those well inside.
 
         The points are its outermost ones, those halfway to its middle, and its middle. Well inside
         is deeper than bodies that touch cut each other; for this those a quarter of the way count
         beside the outermost, as these touch the bottom of what the body stands in.
+
+        ``least``: a share of the first kind that is below this may be too low.
         """
-        corners = self.body.corners
-        points = np.concatenate([corners, 0.5 * corners, np.zeros((1, 3)), 0.75 * corners])
-        count = 2 * len(corners) + 1
-        within, deep = np.zeros(len(self.body.middles)), np.zeros(len(self.body.middles))
-        planes = self.other.planes
+        within, deep = np.zeros(len(frames)), np.zeros(len(frames))
         with np.errstate(invalid="ignore"):
-            frames = np.flatnonzero(self.gap <= 0.0)
-        if planes is not None:
-            length = max(1, BLOCK_VALUES // len(points))
-            for start in range(0, len(frames), length):
-                some = frames[start : start + length]
-                height = self._heights(points, planes, some)
-                within[some] = (height[:, :count] <= 0.0).mean(axis=1)
-                ends = np.concatenate([height[:, : len(corners)], height[:, count:]], axis=1)
-                deep[some] = (ends <= -self.thresholds.tolerance_most_m).mean(axis=1)
+            meeting = np.flatnonzero(self.gap[frames] <= 0.0)
+        length = max(1, BLOCK_VALUES // (3 * len(self.body.corners) + 1))
+        for start in range(0, len(meeting) if self.other.planes is not None else 0, length):
+            some = meeting[start : start + length]
+            within[some], deep[some] = self._shares(frames[some], least)
         return within, deep
 
-    def _heights(
-        self,
-        points: Float[np.ndarray, "points 3"],
-        planes: Float[np.ndarray, "planes 4"],
-        frames: Int[np.ndarray, "some"],
-    ) -> Float[np.ndarray, "some points"]:
-        """How far each of the body's points is outside the other's hull, negative inside [m]."""
-        back = self.other.turns_at(frames)
+    def _shares(
+        self, frames: Int[np.ndarray, "some"], least: float
+    ) -> tuple[Float[np.ndarray, "some"], Float[np.ndarray, "some"]]:
+        corners, other, planes = self.body.corners, self.other, self.other.planes
+        assert planes is not None and other.shape is not None
+        points = np.concatenate([corners, 0.5 * corners, np.zeros((1, 3)), 0.75 * corners])
+        middle = slice(len(corners), 2 * len(corners) + 1)
+        back = other.turns_at(frames)
         turns = np.swapaxes(self.body.turns_at(frames), 1, 2) @ back
-        offset = (self.body.middles[frames] - self.other.middles[frames])[:, None] @ back
-        local = points @ turns + offset
-        out = np.full(local.shape[:2], np.inf)
-        half = 0.5 * self.other.shape.size if self.other.shape else np.zeros(3)
-        boxed = geometry.every(np.abs(local) <= half + 1e-9)
-        candidates = local[boxed]
-        heights = np.empty(len(candidates))
+        offset = (self.body.middles[frames] - other.middles[frames])[:, None] @ back
+        local = points @ turns
+        local += offset
+        half, deep_m = 0.5 * other.shape.size, self.thresholds.tolerance_most_m
+        asked = geometry.every(np.abs(local) <= half + 1e-9)
+        # The hull is in the box: where few points are, only those matter that are deep in this.
+        few = asked[:, : middle.stop].mean(axis=1) < least
+        asked[few, middle] = False
+        candidates = local[asked]
+        near = geometry.every(np.abs(candidates) <= half - deep_m + ROUNDED_M)
+        near |= ~np.repeat(few, asked.sum(axis=1))
+        candidates, found = candidates[near], np.full(len(near), np.inf)
+        height = np.empty(len(candidates))
         for start in range(0, len(candidates), BLOCK_POINTS):
             part = slice(start, start + BLOCK_POINTS)
-            heights[part] = (candidates[part] @ planes[:, :3].T + planes[:, 3]).max(axis=1)
-        out[boxed] = heights
-        return out
+            height[part] = (candidates[part] @ planes[:, :3].T + planes[:, 3]).max(axis=1)
+        heights = np.full(asked.shape, np.inf)
+        found[near] = height
+        heights[asked] = found
+        ends = np.delete(heights, middle, axis=1)
+        return (
+            (heights[:, : middle.stop] <= 0.0).mean(axis=1),
+            (ends <= -deep_m).mean(axis=1),
+        )
 
 
 def inside(pair: Pair) -> Holds:
@@ -122,7 +138,7 @@ def inside(pair: Pair) -> Holds:
     a shape is a point, and that of what lies on a table may be in it as far as bodies that touch
     cut each other: it is inside where it is well inside.
     """
-    within, deep = pair.shares
+    within, deep = pair.hull_shares
     share, limits = (deep if pair.body.shape is None else within), pair.thresholds
     held = lasting(share >= limits.inside_share, share >= limits.inside_stays_share)
     with np.errstate(invalid="ignore"):
@@ -131,7 +147,7 @@ def inside(pair: Pair) -> Holds:
 
 def dips(pair: Pair) -> Holds:
     """One end of it is in the other's hull, deeper than bodies that touch cut each other."""
-    return np.asarray(pair.shares[1] > 0.0)
+    return np.asarray(pair.hull_shares[1] > 0.0)
 
 
 def above(pair: Pair) -> Holds:
@@ -266,10 +282,10 @@ def company(
     carriers = {*mobile, *(sensor.name for sensor in capture.acting)}
     for name in mobile:
         thing = bodies.objects[name]
-        travels = travelling(thing.poses.settled, thresholds)
-        if not travels.any():
+        journey = Journey(thing.poses.settled, thresholds)
+        if not journey.travels.any():
             continue
-        for span in _spans(travels, capture, thresholds):
+        for span in _spans(journey.travels, capture, thresholds):
             yield Travels(name, *span)
         wholes = [bodies.sensors[each.name] for each in capture.sensors if not each.part_of]
         others = [*wholes, *(bodies.objects[name] for name in mobile)]
@@ -282,7 +298,7 @@ def company(
             together = (
                 (one, span)
                 for one in parts
-                for span in _together(one.poses.settled, thing.poses.settled, capture, thresholds)
+                for span in _together(one.poses.settled, journey, capture, thresholds)
             )
             for one, span in together:
                 near = parts if one is other else (one,)
@@ -293,9 +309,9 @@ def company(
 
 
 def _together(
-    carrier: Stream, thing: Stream, capture: Capture, thresholds: Thresholds
+    carrier: Stream, journey: Journey, capture: Capture, thresholds: Thresholds
 ) -> list[Interval]:
-    frames = steady_in(carrier, thing, thresholds)
+    thing, frames = journey.thing, journey.steady_in(carrier)
     out = frames.copy()
     for first, last in geometry.runs(frames):
         before = last_where(_strays(carrier, thing, first, thresholds.touch_margin_m), first)
@@ -348,7 +364,7 @@ def _gap(
         break
     apart: Series
     if pivots:
-        apart = points.apart(other.poses.settled, thing.poses.settled)[some]
+        apart = points.apart(other.poses.settled, thing.poses.settled, some)
     else:
         lost = other.poses.lost[some] | thing.poses.lost[some]
         known = some[~lost]

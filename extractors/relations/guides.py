@@ -16,6 +16,7 @@ from extractors.bodies.bodies import BodyGeometry
 from extractors.bodies.poses import poses_in, standing
 from extractors.contact.surfaces import surface
 from extractors.motion.object_motion import Floor, motion_floor
+from extractors.relations.arrangement import boxes_apart
 from extractors.signals.intervals import Interval, frame_rate
 from extractors.thresholds import Thresholds
 
@@ -24,6 +25,9 @@ HINGE, RAIL = "hinge", "rail"
 ROUNDS = 3
 """How often the orientation that angles are counted from is averaged anew [1]: the first round
 takes it from one frame, the second from all, the third changes it by less than a microradian."""
+
+FEW = 1000
+"""One frame in so many is looked at first where one that is far off tells [1]."""
 
 ROUNDED = 1e-9
 """By this share a bound is wider than what it bounds [1], as numbers are rounded."""
@@ -261,11 +265,12 @@ def parts(
             found[one.name] = Part(objects[guide.base], body, floors[one.name], guide)
             continue
         for other in stated or capture.objects:
-            larger = (_volume(one), other.name) < (_volume(other), one.name)
-            may = {one.name, other.name} <= set(free) and larger
+            its = objects[other.name]
+            may = {one.name, other.name} <= set(free)
+            may = may and (body.volume_m3, its.name) < (its.volume_m3, body.name)
             may = may or (other.tag is TagType.FIXED and one.name in free)
-            if stated or (may and _stays_near(body, objects[other.name], thresholds)):
-                part = _part(one, body, objects[other.name], thresholds, stated=bool(stated))
+            if stated or (may and _stays_near(body, its, thresholds)):
+                part = _part(one, body, its, thresholds, stated=bool(stated))
                 best = found.get(one.name)
                 if stated or (part.guide and (best is None or _apart(part) < _apart(best))):
                     found[one.name] = part
@@ -280,17 +285,16 @@ def _apart(part: Part) -> float:
     return float(np.maximum(_outside(line, part.base, part.guide.closed), 0.0).mean())
 
 
-def _volume(each: TagObject) -> float:
-    """The volume of a body's convex hull [m3]."""
-    return 0.0 if each.shape is None else float(surface(each.shape).mesh.convex_hull.volume)
-
-
 def _stays_near(one: BodyGeometry, other: BodyGeometry, thresholds: Thresholds) -> bool:
     """Whether the boxes of two bodies are never farther apart than a hinge's leaf."""
-    (low, high), (below, above) = one.boxes, other.boxes
-    gaps = geometry.lengths(np.maximum(np.maximum(low - above, below - high), 0.0))
-    with np.errstate(invalid="ignore"):
-        return not (gaps > thresholds.hinge_near_m).any() and not one.poses.rests
+    if one.poses.rests:
+        return False
+    # Most are apart in one of a few frames.
+    for frames in (slice(None, None, FEW), slice(None)):
+        with np.errstate(invalid="ignore"):
+            if (boxes_apart(one, other, frames) > thresholds.hinge_near_m).any():
+                return False
+    return True
 
 
 def _part(
@@ -435,13 +439,19 @@ def _course_by_shapes(
 
 def _fit(body: BodyGeometry, floor: Floor, thresholds: Thresholds) -> GuideFit | None:
     """The line that the body never leaves, if it moves far enough to tell."""
-    middles = body.middles[_known(body)]
+    known = _known(body)
+    middles, turns = body.middles[known], body.orientations[known]
+    kinds = [(fit_rail, floor.position_m)]
     if len(middles):
         offset = middles - middles.mean(axis=0)
         least = np.linalg.eigvalsh(offset.T @ offset / len(offset))[0]
         if least > floor.position_m**2 * (1.0 + ROUNDED):
             return None
-    for fitted, own in ((fit_rail, floor.position_m), (fit_hinge, floor.rotation_rad)):
+        # Each round takes the angles from an orientation up to three times as far from all others.
+        turned_rad = float(geometry.angle_between(turns, turns[:1]).max())
+        if 2.0 * 3.0 ** (ROUNDS - 1) * turned_rad >= thresholds.guide_floors * floor.rotation_rad:
+            kinds.append((fit_hinge, floor.rotation_rad))
+    for fitted, own in kinds:
         fit = fitted(body)
         if (
             fit is not None

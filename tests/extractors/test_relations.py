@@ -29,6 +29,7 @@ from capar.model.facts import Bears, Leans, LookingAt, Posture, Shapeless, Solid
 from capar.pipelines.observation import observe
 from extractors.bodies.bodies import BodyGeometry, from_trunk, geometry_of
 from extractors.contact.normals import contact_normal
+from extractors.contact.touch_distances import Journey, in_either_frame
 from extractors.measure import measure
 from extractors.motion.impacts import falls
 from extractors.motion.object_motion import Floor
@@ -257,6 +258,55 @@ def test_a_point_is_inside_where_it_is_deeper_than_bodies_that_touch_cut_each_ot
     whisk = body(np.array([0.0, 0.0, top - under_m]), shape=None)
     assert bool(inside(Pair(whisk, table, LIMITS)).all()) is held
     assert bool(inside(Pair(whisk, table, LIMITS)).any()) is held
+
+
+@given(seed=st.integers(0, 9999), bowl=st.booleans(), point=st.booleans())
+@settings(max_examples=30, deadline=None)
+def test_shares_that_few_points_make_are_never_taken_for_more_and_depths_are_exact(
+    seed: int, bowl: bool, point: bool
+) -> None:
+    random = np.random.default_rng(seed)
+    there = body(
+        random.normal(scale=0.06, size=(len(TIMES), 3)),
+        shape=None if point else shapes.box(0.02, 0.05, 0.3),
+        turns=Rotation.random(len(TIMES), random_state=seed),
+    )
+    shape = shapes.bowl(0.1, 0.08) if bowl else shapes.box(0.2, 0.2, 0.2)
+    pair = Pair(there, body(np.zeros(3), shape=shape), LIMITS)
+    within, deep = pair.shares(np.arange(len(TIMES)))
+    fast_within, fast_deep = pair.hull_shares
+    low = within < LIMITS.inside_stays_share
+    assert np.array_equal(fast_within[~low], within[~low])
+    assert (fast_within[low] <= within[low]).all()
+    assert np.array_equal(fast_deep, deep)
+
+
+@given(seed=st.integers(0, 9999), lost=st.booleans())
+@settings(max_examples=20, deadline=None)
+def test_all_runs_of_a_journey_at_once_are_steady_where_each_frame_by_itself_is(
+    seed: int, lost: bool
+) -> None:
+    random = np.random.default_rng(seed)
+    gates = np.repeat(random.random(8) < 0.5, -(-len(TIMES) // 8))[: len(TIMES), None]
+    way = np.cumsum(gates * random.normal(0.002, 0.004, (len(TIMES), 3)), axis=0)
+    turns = Rotation.from_rotvec(np.cumsum(random.normal(0, 0.01, way.shape), axis=0))
+    carrier_way = way + turns.apply([0.1, 0.0, 0.0]) + random.normal(0.0, 0.003, way.shape)
+    if lost:
+        carrier_way[random.integers(0, len(TIMES), 3)] = np.nan
+    thing, carrier = body(way).poses.filled, body(carrier_way, turns=turns).poses.filled
+    journey = Journey(thing, LIMITS)
+    half = round(0.5 * LIMITS.co_motion_window_s / (TIMES[1] - TIMES[0]))
+
+    def spreads(points: np.ndarray) -> np.ndarray:
+        windows = (points[max(0, at - half) : at + half + 1] for at in range(len(TIMES)))
+        return np.array([np.linalg.norm(np.ptp(window, axis=0)) for window in windows])
+
+    far = spreads(thing.positions)
+    stray = np.minimum(*map(spreads, in_either_frame(carrier, thing, slice(None))))
+    most = np.maximum(LIMITS.co_motion_stray_m, LIMITS.co_motion_share * far)
+    travels = far >= LIMITS.co_motion_way_m
+    assert np.array_equal(journey.travels, travels)
+    assert np.array_equal(journey.steady_in(carrier), travels & (stray <= most))
 
 
 def test_between_is_on_the_way_from_one_to_the_other() -> None:

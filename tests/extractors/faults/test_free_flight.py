@@ -8,7 +8,7 @@ from measured_bodies import stream
 
 from capar.model.capture import Sensor, TagObject, TagType
 from extractors.bodies.bodies import BodyGeometry, geometry_of
-from extractors.faults.gravity import Flight, flights
+from extractors.faults.gravity import WINDOWS, Flight, _bends, flights
 from extractors.thresholds import Thresholds
 
 T = Thresholds()
@@ -51,6 +51,25 @@ def test_a_flight_has_the_acceleration_that_it_was_made_with(
     (flight,) = flown(thing(tossed(rate_hz, pull, across, 0.001 * scale), rate_hz))
     assert np.linalg.norm(flight.acceleration - pull) < 0.05 * np.linalg.norm(pull)
     assert flight.curved
+
+
+@pytest.mark.parametrize("width", WINDOWS)
+def test_frames_that_fit_a_parabola_are_those_whose_own_window_does(width: int) -> None:
+    path = tossed(100.0, np.array([0.0, 0.0, -9.81]), np.array([1.0, 0.0, 0.0]), 0.0005)
+    path = np.concatenate([path, path[::-1], path])
+    _, fits = _bends(path, width, 0.0005, T)
+    plain = []
+    for at in range(width // 2, len(path) - width // 2):
+        window = path[at - width // 2 : at + width // 2 + 1]
+        index = np.arange(width) - width // 2
+        basis = np.linalg.qr(np.vander(index.astype(float), 4, increasing=True))[0]
+        terms = np.linalg.norm(basis.T @ window, axis=1)
+        misfit = np.linalg.norm(window - basis @ (basis.T @ window))
+        noise_m = T.flight_noise_sigmas * 0.0005 * np.sqrt(3.0 * (width - 4))
+        limit = T.flight_change_share * terms[2]
+        bent = terms[2] >= T.flight_bend_sigmas * 0.0005
+        plain.append(bent and terms[3] <= limit and misfit <= limit + noise_m)
+    assert fits[width // 2 : len(path) - width // 2].tolist() == plain
 
 
 def test_who_goes_along_holds_it() -> None:
