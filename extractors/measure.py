@@ -5,7 +5,7 @@ from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import combinations
 from operator import attrgetter
 from typing import Any, cast
@@ -65,10 +65,11 @@ from extractors.calibration import calibrated, check_clock, thresholds_of
 from extractors.contact.contacts import Contact, arrivals, blows, contacts
 from extractors.contact.normals import contact_normal
 from extractors.contact.touch_distances import forget_touchable, touching_part
+from extractors.cores import shared
 from extractors.faults.faults import faults
 from extractors.motion.impacts import closing_speed, falls, release_speed
 from extractors.motion.motion_edges import motion_edges, standstills, true_rests
-from extractors.motion.object_motion import Floor, RestPose, moving
+from extractors.motion.object_motion import Floor, moving
 from extractors.motion.phases import (
     leaning,
     lengthwise,
@@ -232,10 +233,6 @@ class _Trial:
         parts = self.parts
         return parts[name].body.poses if name in parts else self.bodies.objects[name].poses
 
-    def rests(self, name: str) -> tuple[RestPose, ...]:
-        """The places where an object rests."""
-        return standstills(self.moved_poses(name), self.floor(name), self.limits)
-
     def spans(self, holds: Holds, one: BodyGeometry) -> list[Interval]:
         """The intervals in which something holds of a body, as those of contacts are made."""
         return intervals(
@@ -346,19 +343,22 @@ class _Trial:
                         begin = max(touch.interval[0], min(own_work)[0] if late else 0)
                         yield replace(touch, interval=(begin, touch.interval[1]))
 
-    def motions(self, touches: Iterable[Contact]) -> Iterator[Fact]:
-        """When each object moves, by its floor, and when that truly began and ended."""
-        for name in self.mobile:
-            poses, rests, floor = (
-                self.moved_poses(name),
-                self.rests(name),
-                self.floor(name),
-            )
-            for interval in moving(poses, rests, floor, self.limits):
-                yield Moving(name, *interval)
-                partners = self._touched(name, interval, touches)
-                edges = motion_edges(poses, interval, rests, floor, self.limits, partners)
-                yield Displaced(name, *edges)
+    def motion(
+        self, name: str, poses: Poses, touches: Iterable[Contact]
+    ) -> "Iterator[Fact | Arriving]":
+        """When an object moves, by its floor, and when that truly began and ended.
+
+        And that it has come to rest so recently that its place is not known yet.
+        """
+        floor = self.floor(name)
+        rests = standstills(poses, floor, self.limits)
+        for interval in moving(poses, rests, floor, self.limits):
+            yield Moving(name, *interval)
+            partners = self._touched(name, interval, touches)
+            edges = motion_edges(poses, interval, rests, floor, self.limits, partners)
+            yield Displaced(name, *edges)
+        if rests and rests[-1].missing:
+            yield Arriving(rests[-1].interval[0], rests[-1].missing)
 
     def _touched(self, name: str, motion: Interval, touches: Iterable[Contact]) -> list[Poses]:
         """Poses of what an object touches as it moves and what is not fixed."""
@@ -373,45 +373,63 @@ class _Trial:
         found = (self.bodies.named(other).poses for other in sorted(others))
         return [poses for poses in found if not poses.rests and poses is not own]
 
-    def handling(self, known: Sequence[Fact]) -> Iterator[Fact]:
-        """Rest, turning points, leaning, falls, arrangements and places of handled bodies.
+    def courses(self, known: Sequence[Fact]) -> list[Callable[[], Iterable[Any]]]:
+        """Rest, company, contact's details and courses of bodies: each measured by itself.
 
         Handled are the acting end-effectors and every mobile object that one of them touches.
         """
-        limits, things = self.limits, self.bodies.objects
-        touches = [fact for fact in known if isinstance(fact, Touching)]
-        held = {touch.other for touch in touches if touch.body in self.acting}
-        mobile = [name for name in self.mobile if name in held]
-        out: list[Fact] = []
-        for name, hand in self.acting.items():
-            out += (Resting(name, *rest) for rest in true_rests(hand.poses, limits))
-        for name in mobile:
-            out += self._course(things[name], known, self.guides.get(name))
-        out += seated(things, self.acting, touches, known, limits)
-        out += bearing(self.capture, self.bodies, touches, self.calibration, limits)
-        last = len(self.capture.times) - 1
-        borders = boundary_frames([*known, *out], self.acting, last)
-        others = (things[name] for name in mobile if name not in self.acting)
-        for one in (*self.acting.values(), *others):
-            out += self._placed(one, tuple(borders.get(one.name, ())), touches)
-        for touch in touches:
-            if touch.body in self.acting and touch.other in mobile and touch.body != touch.other:
-                hand, thing = self.acting[touch.body], things[touch.other]
-                for span in shifts(hand, thing, (touch.first, touch.last), limits):
-                    out.append(Lies(touch.body, SHIFTS, touch.other, *span))
-                speed_mm = round(1000.0 * release_speed(thing, touch.last))
-                out.append(ReleaseSpeed(touch.body, touch.other, touch.first, speed_mm))
-        kinds = {thing.name: thing.kind for thing in self.capture.objects}
-        yield from out
-        yield from rooms(things, kinds, touches, tuple(out), limits)
-        yield from self._contact_details(touches)
-        yield from self._loads(known)
+        capture, bodies, limits = self.capture, self.bodies, self.limits
+        calibration, held = self.calibration, self._held(known)
+        handled = (name for name in self.mobile if name in held)
+        return [
+            partial(self._contact_details, known),
+            *(
+                partial(company, [name], capture, bodies, calibration, limits)
+                for name in self.mobile
+            ),
+            *(partial(self._resting, name) for name in self.acting),
+            *(partial(self._course, bodies.objects[name], known) for name in handled),
+        ]
 
-    def _course(
-        self, one: BodyGeometry, known: Sequence[Fact], guide: Guide | None
-    ) -> Iterator[Fact]:
+    def _resting(self, name: str) -> Iterator[Fact]:
+        return (Resting(name, *rest) for rest in true_rests(self.acting[name].poses, self.limits))
+
+    def _held(self, known: Iterable[Fact]) -> set[str]:
+        """What acting end-effectors touch."""
+        return {f.other for f in known if isinstance(f, Touching) and f.body in self.acting}
+
+    def handling(self, known: Sequence[Fact]) -> Iterator[Fact]:
+        """Arrangements and places of handled bodies, at what is known to begin and to end."""
+        things, last = self.bodies.objects, len(self.capture.times) - 1
+        touches = [fact for fact in known if isinstance(fact, Touching)]
+        borders, held = boundary_frames(known, self.acting, last), self._held(known)
+        others = (name for name in self.mobile if name in held and name not in self.acting)
+        bodies = (*self.acting.values(), *(things[name] for name in others))
+        tasks = [
+            *(
+                partial(self._placed, one, tuple(borders.get(one.name, ())), touches)
+                for one in bodies
+            ),
+            *(partial(self._let_go, name, touches) for name in self.acting),
+        ]
+        found = [fact for facts in shared(tasks, last + 1) for fact in facts]
+        kinds = {thing.name: thing.kind for thing in self.capture.objects}
+        yield from found
+        yield from rooms(things, kinds, touches, (*known, *found), self.limits)
+
+    def _let_go(self, name: str, touches: Iterable[Touching]) -> Iterator[Fact]:
+        """How a hand goes elsewhere on what it touches, and how fast that is when it leaves it."""
+        for touch in touches:
+            if touch.body == name != touch.other and touch.other in self.mobile:
+                hand, thing = self.acting[name], self.bodies.objects[touch.other]
+                for span in shifts(hand, thing, (touch.first, touch.last), self.limits):
+                    yield Lies(name, SHIFTS, touch.other, *span)
+                speed_mm = round(1000.0 * release_speed(thing, touch.last))
+                yield ReleaseSpeed(name, touch.other, touch.first, speed_mm)
+
+    def _course(self, one: BodyGeometry, known: Sequence[Fact]) -> Iterator[Fact]:
         """Phases, turning points, swings, leaning, falls and rolling of a handled object."""
-        name, limits = one.name, self.limits
+        name, guide, limits = one.name, self.guides.get(one.name), self.limits
         moves, displaced = (
             tuple((f.first, f.last) for f in known if isinstance(f, kind) and f.object == name)
             for kind in (Moving, Displaced)
@@ -495,16 +513,21 @@ class _Trial:
         found = ((sensor.name, trunks[capture.agent_of(sensor)]) for sensor in capture.acting)
         return {name: trunk.name for name, trunk in found if trunk and trunk.name != name}
 
-    def _loads(self, known: Sequence[Fact]) -> Iterator[Fact]:
-        """What mobile objects bear in or on them and take along."""
-        things, moves = self.bodies.objects, _motions(known)
-        for touch in known:
-            if isinstance(touch, Touching) and {touch.body, touch.other} <= set(self.mobile):
+    def _contact_details(self, known: Sequence[Fact]) -> Iterator[Fact]:
+        """What is down on what and borne by it, from where bodies touch, and how fast they met."""
+        things, limits = self.bodies.objects, self.limits
+        touches = [fact for fact in known if isinstance(fact, Touching)]
+        yield from seated(things, self.acting, touches, known, limits)
+        yield from bearing(self.capture, self.bodies, touches, self.calibration, limits)
+        yield from self._normals(touches)
+        moves = _motions(known)
+        for touch in touches:
+            if {touch.body, touch.other} <= set(self.mobile):
                 load, bearer, span = things[touch.body], things[touch.other], touch.ends()
-                if rides(load, bearer, (span[0], span[1]), moves[touch.other], self.limits):
+                if rides(load, bearer, (span[0], span[1]), moves[touch.other], limits):
                     yield Rides(touch.body, touch.other, touch.first)
 
-    def _contact_details(self, touches: list[Touching]) -> Iterator[Fact]:
+    def _normals(self, touches: list[Touching]) -> Iterator[Fact]:
         """From where bodies touch, and how fast they met."""
         upward: dict[tuple[str, str, int], int] = {}
         for touch in touches:
@@ -538,13 +561,6 @@ class _Trial:
                 along = float(normal @ ahead)
                 if not np.isnan(along):
                     yield SightNormal(*names, first, round(1000.0 * along))
-
-    def arriving(self) -> Iterator[tuple[str, "Arriving"]]:
-        """The mobile objects that have come to rest so recently that its place is not known yet."""
-        for name in self.mobile:
-            rests = self.rests(name)
-            if rests and rests[-1].missing:
-                yield name, Arriving(rests[-1].interval[0], rests[-1].missing)
 
 
 LOSS = "long-gap"
@@ -723,7 +739,7 @@ def measured(
     whether losses and faults are sought, too. ``whole``: whether this is a whole recording: angles
     that stay small in it are left out.
     """
-    limits = thresholds_of(calibration)
+    limits, frames = thresholds_of(calibration), len(capture.times)
     trial = _Trial(capture, bodies, calibration, limits, since, whole)
     tracks = {
         name: _track(body.poses, calibration.sensor(name).highest_speed_mps, limits)
@@ -731,7 +747,11 @@ def measured(
     }
     looks = {sensor.name: attention(capture, sensor, bodies, limits) for sensor in seeing(capture)}
     near = contacts(capture, bodies, calibration, limits)
-    moves = list(trial.motions(near))
+    ways = {name: trial.moved_poses(name) for name in trial.mobile}
+    moved = shared([partial(trial.motion, *way, near) for way in ways.items()], frames)
+    moves = [each for found in moved for each in found if not isinstance(each, Arriving)]
+    last = ((name, found[-1]) for name, found in zip(ways, moved, strict=True) if found)
+    arriving = {name: each for name, each in last if isinstance(each, Arriving)}
     touches = tuple(arrivals(capture, bodies, calibration, near, moves, limits))
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
     # Kept for contacts alone, and filtered poses of what handles nothing.
@@ -746,7 +766,12 @@ def measured(
         facts += (Pause(name, int(frame)) for frame in track.pauses)
     for sensor, look in looks.items():
         facts += (LookingAt(sensor, name, *interval) for name, interval in look.looks)
-    facts += company(capture, bodies, calibration, limits)
+    courses: list[Callable[[], Iterable[Any]]] = trial.courses(tuple(facts))
+    if notices:
+        courses.append(partial(faults, capture, bodies, touches, _motions(moves), limits))
+    found = shared(courses, frames)
+    wrong = found.pop() if notices else []
+    facts += (fact for some in found for fact in some)
     facts += list(trial.handling(tuple(facts)))
     own = [notice for notice in capture.notices if notice.code != LOSS]
     if notices:
@@ -757,7 +782,7 @@ def measured(
             if each.code != "mount-gap" or not set(each.bodies) & set(trial.wholes)
         )
         own += trial.guide_notices()
-        own += faults(capture, bodies, touches, _motions(moves), limits)
+        own += wrong
     return Measurements(
         _ordered(facts),
         tuple(own),
@@ -767,7 +792,7 @@ def measured(
         bodies.without_caches(),
         tuple(trial.guide_locations()),
         {(each.first, each.second): each.interval[1] for each in near if each.lingers},
-        dict(trial.arriving()),
+        arriving,
     )
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -23,6 +24,7 @@ from extractors.contact.touch_distances import (
     touchable,
     with_gaps,
 )
+from extractors.cores import shared
 from extractors.motion.object_motion import resting, slopes
 from extractors.signals.filters import gains, speed
 from extractors.signals.intervals import Interval, duration, frame_rate, intervals, mask
@@ -399,45 +401,58 @@ def contacts(
     long; one that is there on one side alone ends, or begins, where the body was last, or first,
     seen (spec 3).
     """
-    surfaces = {each: touchable(each) for pair in watched(capture, bodies) for each in pair}
-    found: list[Contact] = []
-    feet = soles(capture)
-    for first, second in watched(capture, bodies):
-        one, two = surfaces[first], surfaces[second]
-        pair = calibration.pair(first.name, second.name)
-        if pair.found is Found.NEVER:
-            continue
-        near_by = np.zeros(len(capture.times), dtype=bool)
-        if pair.pivots:
-            apart = points_apart(pair, first, second)
-            touching = np.nan_to_num(apart, nan=np.inf) <= pair.touch_m
-        else:
-            touching = near(one, two, distance_m=pair.touch_m)
-            if pair.release_m > pair.touch_m and touching.any():
-                near_by = near(one, two, distance_m=pair.release_m)
-                edge = round(calibration.contact_dropout_s * frame_rate(capture.times))
-                touching = bridged(touching, near_by, edge=edge)
-        # Where a body was lost nothing begins or ends: what touched before and after has touched.
-        touching = bridged(touching, first.poses.lost | second.poses.lost)
-        if first.name in feet and second.poses.fixed is not None and touching.any():
-            ground_mps = calibration.ground_velocity(feet[first.name], second.name)
-            touching &= ~gliding(first, second, limits, ground_mps)
-        for interval in intervals(
-            touching,
-            capture.times,
-            dropout_s=calibration.contact_dropout_s,
-            minimum_s=calibration.contact_minimum_s,
-        ):
-            if in_passing(first, second, interval, limits):
-                continue
-            gap = float(apart[interval[0]]) if pair.pivots else distance(one, two, interval[0])
-            lingers = interval[1] + 1 < len(near_by) and bool(near_by[interval[1] + 1 :].all())
-            found.append(Contact(first.name, second.name, interval, gap, lingers=lingers))
+    pairs = tuple(watched(capture, bodies))
+    surfaces = {each: touchable(each) for pair in pairs for each in pair}
+    tasks = [partial(_of_pair, capture, *pair, calibration, limits) for pair in pairs]
+    found = [each for some in shared(tasks, len(capture.times)) for each in some]
     direct = tuple(_direct(capture, found, surfaces, calibration))
     whole = tuple(of_end_effectors(capture, direct, calibration))
     met = [(each.first, each.second, each.interval) for each in whole]
     counted = counted_meetings(capture, bodies, met, limits)
     return tuple(each for each, counts in zip(whole, counted, strict=True) if counts)
+
+
+def _of_pair(
+    capture: Capture,
+    first: BodyGeometry,
+    second: BodyGeometry,
+    calibration: Calibration,
+    limits: Thresholds,
+) -> list[Contact]:
+    """The contacts of two bodies by their distance alone."""
+    pair = calibration.pair(first.name, second.name)
+    if pair.found is Found.NEVER:
+        return []
+    one, two = touchable(first), touchable(second)
+    near_by = np.zeros(len(capture.times), dtype=bool)
+    if pair.pivots:
+        apart = points_apart(pair, first, second)
+        touching = np.nan_to_num(apart, nan=np.inf) <= pair.touch_m
+    else:
+        touching = near(one, two, distance_m=pair.touch_m)
+        if pair.release_m > pair.touch_m and touching.any():
+            near_by = near(one, two, distance_m=pair.release_m)
+            edge = round(calibration.contact_dropout_s * frame_rate(capture.times))
+            touching = bridged(touching, near_by, edge=edge)
+    # Where a body was lost nothing begins or ends: what touched before and after has touched.
+    touching = bridged(touching, first.poses.lost | second.poses.lost)
+    feet = soles(capture)
+    if first.name in feet and second.poses.fixed is not None and touching.any():
+        ground_mps = calibration.ground_velocity(feet[first.name], second.name)
+        touching &= ~gliding(first, second, limits, ground_mps)
+    found: list[Contact] = []
+    for interval in intervals(
+        touching,
+        capture.times,
+        dropout_s=calibration.contact_dropout_s,
+        minimum_s=calibration.contact_minimum_s,
+    ):
+        if in_passing(first, second, interval, limits):
+            continue
+        gap = float(apart[interval[0]]) if pair.pivots else distance(one, two, interval[0])
+        lingers = interval[1] + 1 < len(near_by) and bool(near_by[interval[1] + 1 :].all())
+        found.append(Contact(first.name, second.name, interval, gap, lingers=lingers))
+    return found
 
 
 def of_end_effectors(

@@ -1,6 +1,6 @@
 """How bodies are arranged to each other, keep together, and are gripped."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -270,9 +270,13 @@ SAMPLES = 5
 
 
 def company(
-    capture: Capture, bodies: Bodies, calibration: Calibration, thresholds: Thresholds
+    names: Iterable[str],
+    capture: Capture,
+    bodies: Bodies,
+    calibration: Calibration,
+    thresholds: Thresholds,
 ) -> Iterator[Travels | MovesWith]:
-    """When each mobile object travels, and in whose frame it is steady meanwhile.
+    """When each of some mobile objects travels, and in whose frame it is steady meanwhile.
 
     Asked are all sensors but those on parts of an end-effector, and all other mobile objects. A
     stretch is extended to the frames before and after it in which either is no farther from where
@@ -280,7 +284,7 @@ def company(
     """
     mobile = [body.name for body in capture.objects if body.tag is TagType.MOBILE]
     carriers = {*mobile, *(sensor.name for sensor in capture.acting)}
-    for name in mobile:
+    for name in names:
         thing = bodies.objects[name]
         journey = Journey(thing.poses.settled, thresholds)
         if not journey.travels.any():
@@ -288,7 +292,7 @@ def company(
         for span in _spans(journey.travels, capture, thresholds):
             yield Travels(name, *span)
         wholes = [bodies.sensors[each.name] for each in capture.sensors if not each.part_of]
-        others = [*wholes, *(bodies.objects[name] for name in mobile)]
+        others = [*wholes, *(bodies.objects[each] for each in mobile)]
         for other in others:
             if other.name == name or other.poses is thing.poses:
                 continue
