@@ -37,7 +37,7 @@ def plain(capture: Capture, bodies: Bodies, look: Attention, frames: np.ndarray)
             start = back @ (eye - pose.positions[frame])
             shape = capture.tag_object(name).shape
             assert shape is not None
-            hits = surface(shape).mesh.ray.intersects_location(start[None], (back @ ray)[None])[0]
+            hits = surface(shape).hits(start[None], (back @ ray)[None])[0]
             for hit in hits:
                 if np.linalg.norm(hit - start) < best:
                     best, seen = float(np.linalg.norm(hit - start)), index

@@ -54,6 +54,13 @@ def test_the_help_imports_nothing_that_only_observing_needs() -> None:
     assert not (HEAVY - {"typer", "rich", "pydantic"}) & modules
 
 
+def test_observing_imports_neither_the_meshes_of_all_formats_nor_what_stores_and_draws() -> None:
+    modules = loaded("observe", DEMO)
+    assert "numpy" in modules
+    unneeded = {"trimesh", "networkx", "PIL", "matplotlib", "rdflib", "rich", "mujoco", "rosbags"}
+    assert not unneeded & modules
+
+
 def test_a_question_imports_nothing_that_only_observing_needs(tmp_path: Path) -> None:
     with capar.open_actionary(tmp_path) as book:
         book.add(drink_from_mug())

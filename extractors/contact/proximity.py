@@ -432,7 +432,7 @@ def _between(one: Body, two: Body, third: Body, frame: int, reach_m: float) -> b
     beyond = reach_m / apart_m * (end - begin)
     begin, end = begin - beyond, end + beyond
     way = (end - begin)[None]
-    places, _, _ = third.surface.mesh.ray.intersects_location(begin[None], way)
+    places, _ = third.surface.hits(begin[None], way)
     along = (places - begin) @ way[0] / float(way[0] @ way[0])
     return bool(((along >= 0.0) & (along <= 1.0)).any())
 

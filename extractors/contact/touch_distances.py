@@ -2,11 +2,10 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import trimesh
 from jaxtyping import Float, Int
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
@@ -451,11 +450,17 @@ def touchable_at(each: BodyGeometry, frame: int) -> Body:
 
 
 def _surface(each: BodyGeometry) -> Surface:
-    return surface(_SPECK if each.shape is None else each.shape)
+    return surface(_speck() if each.shape is None else each.shape)
 
 
-_BALL = trimesh.creation.icosphere(subdivisions=0, radius=POINT_M)
-_SPECK = Shape(np.asarray(_BALL.vertices), np.asarray(_BALL.faces), ShapeSource.STAND_IN, "a point")
+@cache
+def _speck() -> Shape:
+    """What stands for a body that has no shape."""
+    import trimesh
+
+    ball = trimesh.creation.icosphere(subdivisions=0, radius=POINT_M)
+    return Shape(np.asarray(ball.vertices), np.asarray(ball.faces), ShapeSource.STAND_IN, "a point")
+
 
 _TOUCHABLE: WeakKeyDictionary[BodyGeometry, Body] = WeakKeyDictionary()
 """Of bodies that were asked for before: each is in many pairs."""

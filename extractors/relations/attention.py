@@ -142,9 +142,7 @@ def _distances(seen: Surface, poses: Poses, origins: Places, rays: Places, limit
     keep = enters < limit[may]
     may, start, ray = may[keep], start[keep], ray[keep]
     if may.size:
-        points, index, _ = seen.mesh.ray.intersects_location(
-            start + BEHIND_M * ray, ray, multiple_hits=False
-        )
+        points, index = seen.hits(start + BEHIND_M * ray, ray, first=True)
         if len(index):
             out[may[index]] = np.einsum("ij,ij->i", points - start[index], ray[index])
     return out

@@ -711,9 +711,7 @@ def _ahead(
     if base.shape is not None:
         local, direction = _local(points, base, frame), way @ base.turn(frame)
         rays = np.broadcast_to(direction, local.shape)
-        places, index, _ = surface(base.shape).mesh.ray.intersects_location(
-            local, rays, multiple_hits=False
-        )
+        places, index = surface(base.shape).hits(local, rays, first=True)
         if len(index):
             out[index] = (places - local[index]) @ direction
     return out - _through(points, way, body, frame)[1]

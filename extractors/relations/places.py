@@ -8,7 +8,6 @@ from typing import cast
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import trimesh
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
@@ -322,6 +321,8 @@ def _sampled(
     vertices: Float[np.ndarray, "vertices 3"], faces: np.ndarray, edge_m: float
 ) -> Float[np.ndarray, "points 3"]:
     """Points of a surface, no further apart than an edge; what no face uses is left out."""
+    import trimesh  # takes long, and few captures have vessels
+
     mesh = trimesh.Trimesh(vertices, faces, process=False)
     fine = cast(trimesh.Trimesh, mesh.subdivide_to_size(edge_m, max_iter=20))
     return np.asarray(fine.vertices)[np.unique(fine.faces)]

@@ -199,7 +199,7 @@ def _contains(bearer: BodyGeometry, load: BodyGeometry, frame: int) -> bool:
         return False
     down = np.array([[0.0, 0.0, -1.0]]) @ bearer.turn(frame)
     centre = bearer.shape.bounds.mean(axis=0)
-    places, _, _ = surface(bearer.shape).mesh.ray.intersects_location((point + centre)[None], down)
+    places, _ = surface(bearer.shape).hits((point + centre)[None], down)
     return bool(len(places))
 
 
