@@ -2,10 +2,10 @@
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache
+from functools import cache, cached_property
 from hashlib import sha256
 from itertools import pairwise
 from pathlib import Path
@@ -363,43 +363,63 @@ _PREDICATE = re.compile(r"\b_*[a-z]\w*(?=\()")
 _WORD = re.compile(r"\b[a-z]\w*\b")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Statement:
-    heads: frozenset[str]
-    """Predicates, or ``fits NAME``."""
-
-    reads: frozenset[str]
-    words: frozenset[str]
+    text: str
     file: Path
+
+    @cached_property
+    def reads(self) -> frozenset[str]:
+        """Predicates in its body, or ``fits NAME``; most statements are never asked for theirs."""
+        return frozenset(_nodes(self.text.partition(":-")[2]))
+
+    @cached_property
+    def words(self) -> frozenset[str]:
+        return frozenset(_WORD.findall(self.text))
+
+
+@dataclass(frozen=True, eq=False)
+class _Rules:
+    """The texts of a rule base: which file states a primitive, and what defines a predicate."""
+
+    texts: Mapping[Path, str]
+    stated: Mapping[str, Path]
+    defining: Mapping[str, Sequence[_Statement]]
+    thresholds: Mapping[str, int]
 
 
 def naming_rules(base: Profile, names: Iterable[str]) -> tuple[NamingRule, ...]:
     """The rules of a rule base that define these names, by name; unknown names have none."""
     known = _rules(base, base.fingerprint)
-    return tuple(known[each] for each in sorted(set(names)) if each in known)
+    return tuple(_naming_rule(known, each) for each in sorted(set(names)) if each in known.stated)
 
 
 @cache
-def _rules(base: Profile, fingerprint: str) -> Mapping[str, NamingRule]:
+def _rules(base: Profile, fingerprint: str) -> _Rules:
     del fingerprint  # what is kept holds for these texts alone
     texts = {each: each.read_text("utf-8") for each in loaded_files(base.files)}
     thresholds = {
         name: int(value) for text in texts.values() for name, value in _CONSTANT.findall(text)
     }
-    statements = [s for file, text in texts.items() for s in _statements(file, text)]
-    defining: dict[str, list[_Statement]] = defaultdict(list)
-    for each in statements:
-        for head in each.heads if each.file.parent.name != CUTTING else ():
-            defining[head].append(each)
-    found = {}
+    stated, defining = dict[str, Path](), defaultdict[str, list[_Statement]](list)
     for file, text in texts.items():
-        for name in _STATED.findall(_COMMENT.sub(_strings, text)):
-            words = _words(name, defining)
-            rests_on = (Threshold(each, thresholds[each]) for each in sorted(words & {*thresholds}))
-            digest = sha256(text.encode()).hexdigest()
-            place = f"{file.parent.name}/{file.name}"
-            found[name] = NamingRule(name, place, digest, text, tuple(rests_on))
-    return found
+        bare = _COMMENT.sub(_strings, text)
+        stated |= dict.fromkeys(_STATED.findall(bare), file)
+        for each in re.split(r"\.(?=\s)", bare) if file.parent.name != CUTTING else ():
+            statement = _Statement(each, file)
+            for head in _nodes(each.partition(":-")[0]):
+                defining[head].append(statement)
+    return _Rules(texts, stated, dict(defining), thresholds)
+
+
+@cache
+def _naming_rule(rules: _Rules, name: str) -> NamingRule:
+    file, known = rules.stated[name], rules.thresholds
+    digest = sha256(rules.texts[file].encode()).hexdigest()
+    used = sorted(_words(name, rules.defining) & {*known})
+    rests_on = tuple(Threshold(each, known[each]) for each in used)
+    place = f"{file.parent.name}/{file.name}"
+    return NamingRule(name, place, digest, rules.texts[file], rests_on)
 
 
 def _words(name: str, defining: Mapping[str, Sequence[_Statement]]) -> frozenset[str]:
@@ -420,17 +440,6 @@ def _words(name: str, defining: Mapping[str, Sequence[_Statement]]) -> frozenset
                 found |= statement.words
                 waiting |= {(below, statement.file.name) for below in statement.reads} - seen
     return frozenset(found)
-
-
-def _statements(file: Path, text: str) -> Iterator[_Statement]:
-    for statement in re.split(r"\.(?=\s)", _COMMENT.sub(_strings, text)):
-        head, _, body = statement.partition(":-")
-        yield _Statement(
-            frozenset(_nodes(head)),
-            frozenset(_nodes(body)),
-            frozenset(_WORD.findall(statement)),
-            file,
-        )
 
 
 def _nodes(text: str) -> set[str]:

@@ -172,7 +172,11 @@ def _hull(shape: Shape) -> _Hull:
         hull = ConvexHull(points)
     except (QhullError, ValueError):
         return None, 0.0
-    planes = np.unique(hull.equations.round(6), axis=0)
+    rounded = hull.equations.round(6)
+    # A scan's hull has thousands of planes, of which some are many already.
+    planes = np.unique(rounded[: 8 * len(AROUND)], axis=0)
+    if len(planes) <= len(AROUND):
+        planes = np.unique(rounded, axis=0)
     if len(planes) > len(AROUND):
         planes = np.hstack([AROUND, -(points @ AROUND.T).max(axis=0)[:, None]])
     return planes, float(hull.volume)

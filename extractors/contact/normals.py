@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from capar.model import geometry
 from capar.model.geometry import Vector
 from extractors.bodies.bodies import BodyGeometry
-from extractors.contact.surfaces import Surface, surface
+from extractors.contact.surfaces import Surface, surface, triangle_boxes
 from extractors.thresholds import Thresholds
 
 SPACING_M = 0.0025
@@ -110,15 +110,15 @@ def places(
     outward: bool = True,
 ) -> Places:
     """Places on triangles [m] within a box, spread evenly over each."""
-    low, high = triangles.min(axis=1), triangles.max(axis=1)
+    low, high = triangle_boxes(triangles)
     some = triangles[geometry.every((low <= box[1]) & (high >= box[0]))]
     # The corner first that the longest edge does not touch.
-    sides = np.linalg.norm(np.roll(some, -1, axis=1) - some, axis=2)
+    sides = geometry.lengths(some[:, [1, 2, 0]] - some)
     order = (sides.argmax(axis=1)[:, None] + np.array([2, 0, 1])) % 3
     some = np.take_along_axis(some, order[:, :, None], axis=1)
     one, two = some[:, 1] - some[:, 0], some[:, 2] - some[:, 0]
     normal = np.cross(one, two)
-    length = np.linalg.norm(normal, axis=1)
+    length = geometry.lengths(normal)
     steps = _steps(one, spacing_m) * (2 * MOST_STEPS) + _steps(two, spacing_m)
     found = [(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0))]
     for both in np.unique(steps).tolist():
@@ -126,7 +126,7 @@ def places(
         rows = np.flatnonzero((steps == both) & (length > 0.0))
         u, v = _spread(along, across)
         points = some[rows, None, 0] + u[:, None] * one[rows, None]
-        points = points + v[:, None] * two[rows, None]
+        points += v[:, None] * two[rows, None]
         inside = geometry.every((points >= box[0]) & (points <= box[1]))
         row = rows[np.nonzero(inside)[0]]
         areas = 0.5 * length[row] / len(u)
@@ -137,7 +137,7 @@ def places(
 
 def _steps(edges: Float[np.ndarray, "edges 3"], spacing_m: float) -> np.ndarray:
     """Into how many steps each edge is divided [1]: a power of two, so that few differ."""
-    ratio = np.linalg.norm(edges, axis=1) / spacing_m
+    ratio = geometry.lengths(edges) / spacing_m
     return np.clip(2 ** np.ceil(np.log2(np.maximum(ratio, 1.0))), 1, MOST_STEPS).astype(int)
 
 
