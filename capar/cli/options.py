@@ -98,9 +98,14 @@ def rule_base(
         CaparError: A folder is missing, or a rule file has a fault.
     """
     from capar_rules.authoring.user_rules import user_rules
+    from capar_rules.engine.profiles import profile as shipped
+
+    added = user_rules(rules, actionary=actionary)
+    if not added:
+        return shipped(profile, steady=steady)
     from capar_rules.lint.checking import admitted_profile
 
-    return admitted_profile(profile, added=user_rules(rules, actionary=actionary), steady=steady)
+    return admitted_profile(profile, added=added, steady=steady)
 
 
 def rule_words(rules: Path | None, actionary: str | None = None) -> "tuple[PrimitiveWords, ...]":

@@ -1,5 +1,6 @@
 """Facts in, atoms out: rules grounded and solved by clingo, in slices and within limits."""
 
+import re
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, wraps
@@ -227,13 +228,14 @@ def _contents(files: Iterable[Path]) -> dict[Path, bytes]:
     return seen
 
 
+_INCLUDE = re.compile(r'^[ \t]*#include [^"\n]*"([^"\n]*)"', re.MULTILINE)
+
+
 @lru_cache(maxsize=512)
 def _read(path: Path, changed_ns: int, size: int) -> tuple[bytes, tuple[Path, ...]]:
     """What a file holds that was changed then, and the files that it includes."""
     content = path.read_bytes()
-    lines = (line.strip() for line in content.decode().splitlines())
-    names = (line.split('"')[1] for line in lines if line.startswith("#include "))
-    return content, tuple(path.parent / name for name in names)
+    return content, tuple(path.parent / name for name in _INCLUDE.findall(content.decode()))
 
 
 def _grounded(files: Iterable[Path], facts: str | Iterable[Fact], option: str) -> clingo.Control:
