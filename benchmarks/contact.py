@@ -1,6 +1,6 @@
 """Contact of 4 sensors with 8 objects at every frame, beside plain distances in the same run.
 
-python benchmarks/contact.py [--minutes 1 10 60] [--sample 150] [--json]
+``python benchmarks/contact.py [--minutes 1 10] [--faces 10000] [--sample 150] [--json]``
 
 The plain way asks for the distance of every pair at every frame. It would take hours, so it is
 timed on evenly spaced frames of the same capture and extrapolated to all. On those frames its
@@ -49,8 +49,8 @@ def ours(where: dict[BodyGeometry, Body], pairs: list[Pair]) -> tuple[float, lis
     return time.perf_counter() - begin, found
 
 
-def row(minutes: float, sample: int) -> dict[str, float]:
-    capture = scene.capture(minutes)
+def row(minutes: float, sample: int, faces: int) -> dict[str, float]:
+    capture = scene.capture(minutes, faces=faces)
     bodies = bodies_of(capture, Thresholds())
     every = list(watched(capture, bodies))
     where = surfaces(every)
@@ -85,11 +85,12 @@ def row(minutes: float, sample: int) -> dict[str, float]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--minutes", type=float, nargs="+", default=[1.0, 10.0, 60.0])
+    parser.add_argument("--minutes", type=float, nargs="+", default=[1.0, 10.0])
+    parser.add_argument("--faces", type=int, default=10_000, help="of a mesh")
     parser.add_argument("--sample", type=int, default=150)
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
-    rows = [row(each, options.sample) for each in options.minutes]
+    rows = [row(each, options.sample, options.faces) for each in options.minutes]
     if options.json:
         print(json.dumps(rows, indent=2))
         return
