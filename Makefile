@@ -27,8 +27,9 @@ check: $(VENV)/developing  ## Style, types and the import contract, as the tests
 	$(VENV)/bin/mypy
 	$(VENV)/bin/lint-imports
 
-bench: $(VENV)/developing  ## Ratios side by side; takes more than an hour.
-	for each in benchmarks/*.py; do $(VENV)/bin/python $$each || exit 1; done
+BENCHMARKS := $(filter-out benchmarks/scene.py,$(wildcard benchmarks/*.py))
+bench: $(VENV)/developing  ## Ratios side by side, half an hour on two quiet cores; NAME.py --help has larger sizes.
+	for each in $(BENCHMARKS); do echo; echo "== $$each"; $(VENV)/bin/python $$each || exit 1; done
 
 docs: $(VENV)/developing  ## What is written from code: the reference of capture.toml, terms of facts, inputs of rules.
 	$(VENV)/bin/python -m extractors.readers.schema.reference docs/capture-toml.md

@@ -1,8 +1,8 @@
 """Load rate and query latency of the Actionary's stores, beside rdflib's memory store, in one run.
 
-``python benchmarks/actionary.py [--largest 1000000] [--rdflib 10000]``: sizes from 10^4 triples up
-in tens.
-rdflib is measured up to 10^4 unless told otherwise: beyond, its joins do not end in useful time.
+``python benchmarks/actionary.py [--smallest 10000] [--largest 1000000] [--rdflib 10000]``: sizes in
+tens, a table each, in milliseconds; the last rows ask without SPARQL. rdflib is measured up to 10^4
+unless told otherwise: beyond, its joins do not end in useful time.
 """
 
 import argparse
@@ -13,7 +13,6 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
@@ -26,6 +25,7 @@ from kb.encode.observation import encode
 from kb.queries.questions import question
 from kb.store.names import GRAPHS
 from kb.store.stores import EmbeddedStore
+from kb.store.updates import VERSION
 from ontology.files import ontology
 
 MADE = (drink_from_mug(), pick_up_with_both_hands(), with_unknown())
@@ -55,6 +55,7 @@ ASKED: dict[str, dict[str, object]] = {
 
 def many(triples: int) -> Iterator[Quad]:
     """Statements of as many observations as make so many triples."""
+    yield VERSION
     for each in ontology():
         yield Quad(each.subject, each.predicate, each.object, GRAPHS["ontology"])
     count, index = 0, 0
@@ -86,23 +87,24 @@ def milliseconds(action: Callable[[], object]) -> list[float]:
     return out
 
 
-def measure(name: str, store: Any, ask: Callable[[str], object], rate: float, size: int) -> None:
-    """Print a line for each question."""
-    print(f"\n{name}, {size:,} triples: loaded at {rate:,.0f} triples/s")
+def answers(store: Actionary | None, ask: Callable[[str], object]) -> dict[str, float]:
+    """Milliseconds to answer each question, and the 95th percentile over all of them."""
     every: list[float] = []
+    found = {}
     for asked, parameters in ASKED.items():
         query = question(asked).bind(parameters)
         times = milliseconds(lambda query=query: ask(query))
         every += times
-        print(f"  {asked:<14}{statistics.median(times):10.2f} ms")
-    lookups = (
-        ("recognise", lambda: store.recognise(MADE[0].complex_par)),
-        ("one place", lambda: ask(ONE_PLACE)),
-    )
-    for label, lookup in lookups if store else ():
-        print(f"  {label:<14}{statistics.median(milliseconds(lookup)):10.2f} ms (API)")
+        found[asked] = statistics.median(times)
     every.sort()
-    print(f"  {'p95':<14}{every[int(len(every) * 0.95)]:10.2f} ms over all named questions")
+    found["95 % of all"] = every[int(len(every) * 0.95)]
+    if store:
+        for label, lookup in (
+            ("recognise", lambda: store.recognise(MADE[0].complex_par)),
+            ("one place", lambda: ask(ONE_PLACE)),
+        ):
+            found[label] = statistics.median(milliseconds(lookup))
+    return found
 
 
 ONE_PLACE = (
@@ -111,26 +113,26 @@ ONE_PLACE = (
 )
 
 
-def embedded(folder: Path | None, quads: list[Quad]) -> None:
+def embedded(folder: Path | None, quads: list[Quad]) -> dict[str, float]:
     """The embedded store, in memory or in a folder."""
     store = EmbeddedStore(folder)
     at = time.perf_counter()
     store.bulk(quads)
     rate = len(quads) / (time.perf_counter() - at)
-    actionary = Actionary(store)
-    measure("folder" if folder else "memory", actionary, store.ask, rate, len(quads))
-    if folder:
-        adds = []
-        for index in range(20):
-            made = replace(drink_from_mug(), capture=f"new{index}")
-            at = time.perf_counter()
-            actionary.add(made)
-            adds.append((time.perf_counter() - at) * 1e3)
-        print(f"  {'add, flushed':<14}{statistics.median(adds):10.2f} ms")
-    actionary.close()
+    with Actionary(store) as actionary:
+        found = {"triples/s loaded": rate, **answers(actionary, store.ask)}
+        if folder:
+            adds = []
+            for index in range(20):
+                made = replace(drink_from_mug(), capture=f"new{index}")
+                at = time.perf_counter()
+                actionary.add(made)
+                adds.append((time.perf_counter() - at) * 1e3)
+            found["add, flushed"] = statistics.median(adds)
+    return found
 
 
-def rdflib_memory(quads: list[Quad]) -> None:
+def rdflib_memory(quads: list[Quad]) -> dict[str, float]:
     """The memory store of rdflib."""
     from rdflib import Graph
 
@@ -139,23 +141,29 @@ def rdflib_memory(quads: list[Quad]) -> None:
     at = time.perf_counter()
     graph.parse(data=text, format="nt")
     rate = len(quads) / (time.perf_counter() - at)
-    measure("rdflib memory", None, lambda query: list(graph.query(query)), rate, len(quads))
+    return {"triples/s loaded": rate, **answers(None, lambda query: list(graph.query(query)))}
 
 
 def main() -> None:
     """Measure every size."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--smallest", type=int, default=10_000, help="triples")
     parser.add_argument("--largest", type=int, default=1_000_000, help="up to 10000000")
     parser.add_argument("--rdflib", type=int, default=10_000, help="largest size for rdflib")
     chosen = parser.parse_args()
-    size = 10_000
+    size = chosen.smallest
     while size <= chosen.largest:
         quads = list(many(size))
-        if size <= chosen.rdflib:
-            rdflib_memory(quads)
-        embedded(None, quads)
+        columns = {"rdflib": rdflib_memory(quads)} if size <= chosen.rdflib else {}
+        columns["memory"] = embedded(None, quads)
         with tempfile.TemporaryDirectory() as folder:
-            embedded(Path(folder) / "actionary", quads)
+            columns["folder"] = embedded(Path(folder) / "actionary", quads)
+        print(f"\n{f'{len(quads):,} triples':20}" + "".join(f"{name:>14}" for name in columns))
+        for row in columns["folder"]:
+            cells = (
+                f"{found[row]:14,.2f}" if row in found else " " * 14 for found in columns.values()
+            )
+            print(f"{row:20}{''.join(cells)}", flush=True)
         size *= 10
 
 

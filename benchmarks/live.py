@@ -1,6 +1,7 @@
 """Work, delay and agreement of live observation.
 
-Run by hand: ``python benchmarks/live.py [--events 10000] [--minutes 1] [--memory 60] [--json]``.
+``python benchmarks/live.py [--events 500] [--minutes 0.2] [--memory 60] [--json]``; growth shows
+over ``--events 10000``.
 
 Three figures. *Work per event*: two bodies that meet again and again, for as many events as asked
 for; the processor time of each tenth of them, and what is held in memory. *Memory*: the same two
@@ -168,8 +169,8 @@ def _memory_mb() -> float:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--events", type=int, default=10_000)
-    parser.add_argument("--minutes", type=float, default=1.0)
+    parser.add_argument("--events", type=int, default=500)
+    parser.add_argument("--minutes", type=float, default=0.2)
     parser.add_argument("--memory", type=float, default=0.0, help="minutes of recording")
     parser.add_argument("--faces", type=int, default=10_000)
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")

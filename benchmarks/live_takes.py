@@ -1,11 +1,12 @@
 """Agreement and delay of live observation over simulated takes.
 
-Run by hand: ``PYTHONPATH=tests python benchmarks/live_takes.py [TAKE ...]``.
+``python benchmarks/live_takes.py [TAKE ...] [--rounds 3]``: one of each simulated recording,
+``all``, or those that are named.
 
 Each take is observed frame by frame with its own calibration. Simulated recordings are played forth
-and back three times with other noise each time; takes of a cook and of a person who carries things
-are played as they were recorded (they need ``CAPAR_DATA``), the latter with the twelve sensors of
-the thesis: trunk, head, neck, hands, elbows, knees, feet, and the thing.
+and back so many times with other noise each time; takes of a cook and of a person who carries
+things are played as they were recorded (without the recordings ``all`` leaves them out), the latter
+with the twelve sensors of the thesis: trunk, head, neck, hands, elbows, knees, feet, and the thing.
 
 The table shows how many segments are settled, how many of them the offline run tells otherwise, how
 many provisional ones change their name or move a border by over 0.1 s until they are settled, how
@@ -15,14 +16,18 @@ second of processor time.
 """
 
 import argparse
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
 import motions
 import numpy as np
+import scene
 from windows import repeated
 
 from capar.model.capture import Capture
@@ -43,7 +48,7 @@ CARRIER = ROOT / "examples" / "omomo_intermimic"
 MOVED_S = 0.1
 """A provisional border that moves by more counts [s]."""
 
-Clip = Callable[[], Capture]
+Clip = Callable[..., Capture]
 CLIPS: dict[str, Clip] = {
     "drink": lambda: trial_of(DEMO),
     "slide": lambda: motions.slide_object(motions.WOMAN).capture,
@@ -62,9 +67,9 @@ BIRDS = ("pelvis", "head", "neck", "wrist", "elbow", "knee", "ankle")
 """What the names of the sensors end with that a rig of the thesis has, left and right."""
 
 
-def noisy(name: str, noise_mm: float) -> Capture:
+def noisy(name: str, noise_mm: float, *, rounds: int) -> Capture:
     """A simulated recording that goes on and on."""
-    return repeated(CLIPS[name](), 3, noise_m=noise_mm / 1000.0)
+    return repeated(CLIPS[name](), rounds, noise_m=noise_mm / 1000.0)
 
 
 def whole_body(take: str) -> Capture:
@@ -179,13 +184,19 @@ def _row(name: str, found: list[Agreement]) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("takes", nargs="*", metavar="TAKE", help=", ".join(TAKES))
-    takes = parser.parse_args().takes or list(TAKES)
+    parser.add_argument("takes", nargs="*", metavar="TAKE", help=", ".join(("all", *TAKES)))
+    parser.add_argument("--rounds", type=int, default=3, help="of simulated recordings")
+    asked = parser.parse_args()
+    takes = asked.takes or [f"{name}_{noises_mm[0]:g}mm" for name, noises_mm in NOISES_MM.items()]
+    if takes == ["all"]:
+        there = scene.recordings()
+        takes = [take for take in TAKES if there or take.endswith("mm")]
     heads = "".join(f"{head:>9}" for head in (*HEADS, "p99 [s]", "+ work"))
     print(f"{'take':20}{'rec. [s]':>9}{heads}{'same':>8}{'x RT':>8}")
     found = []
     for take in takes:
-        found.append(agreement(TAKES[take]()))
+        options = {"rounds": asked.rounds} if take.endswith("mm") else {}
+        found.append(agreement(TAKES[take](**options)))
         print(_row(take, found[-1:]), flush=True)
     print(_row("all", found))
 

@@ -1,21 +1,21 @@
 """Names of cooking takes as another rig would have recorded them: the pivot of each body elsewhere.
 
-Run by hand: ``python benchmarks/moved_pivots.py [--draws 5] [--centimetres 3] [--json]``. In each
-draw the pivot of every recorded body is moved by a random offset of one length that is fixed to the
-body, and all ten takes are observed and scored as ``capar evaluate`` does
-(examples/bimacs_optitrack/evaluation.toml); the recorded pivots stand beside them as draw 0. The
-recordings are found through the environment variable CAPAR_DATA; without it nothing is done.
+``python benchmarks/moved_pivots.py [--draws 1] [--centimetres 3] [--json]``; the docs' figures are
+of five draws. In each draw the pivot of every recorded body is moved by a random offset of one
+length that is fixed to the body, and all ten takes are observed and scored as ``capar evaluate``
+does (examples/bimacs_optitrack/evaluation.toml); the recorded pivots stand beside them as draw 0.
+Without the recordings nothing is done.
 """
 
 import argparse
 import json
-import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scene
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
@@ -84,12 +84,11 @@ def lines(found: list[dict[str, dict[str, float]]]) -> Iterator[str]:
 def main() -> None:
     """Print macro F1 and F1@10 of each draw."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--draws", type=int, default=5)
+    parser.add_argument("--draws", type=int, default=1)
     parser.add_argument("--centimetres", type=float, default=3.0)
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()
-    if not Path(os.environ.get("CAPAR_DATA") or "no folder").is_dir():
-        print("no recordings: set CAPAR_DATA")
+    if not scene.recordings():
         return
     plan = read_plan(PLAN)
     draws = range(options.draws + 1)

@@ -97,10 +97,6 @@ INSIDE = tuple(each for each in STAGES if each not in ("rules read", "reading", 
 BOTH_WAYS = ("facts to text", "answers back")
 REASONING = ("numbering borders", *BOTH_WAYS, "ground and solve")
 PACKAGES = ("capar", "capar_rules", "extractors", "kb", "ontology")
-ADDITIONS = 10_000_000
-REFERENCE_S = 0.7
-"""What the loop of so many additions takes on the machine of docs/performance.md [s]."""
-
 FACTOR = 1.5
 """The best length may be so many times as fast as any other [1]."""
 
@@ -225,8 +221,6 @@ def peak_memory_gb() -> float:
 
 def written(minutes: float, sensors: int, faces: int, folder: Path) -> None:
     """Write the recording of a length, in a process of its own, whose memory ends with it."""
-    import scene
-
     from capar.body.recording import Truth, write_bundle
 
     capture = scene.with_trunk(scene.capture(minutes, faces=faces), sensors)
@@ -260,10 +254,9 @@ def row(minutes: float, sensors: int, faces: int) -> dict[str, Any]:
 
 
 def loop_s() -> float:
-    """Processor time of ten million additions in a loop of Python, as a script runs it [s]."""
-    script = f"total = 0\nfor each in range({ADDITIONS}):\n    total += each"
+    """Processor time of ten million additions in a loop of Python [s]."""
     begin = now()[1]
-    subprocess.run([sys.executable, "-c", script], check=True)
+    subprocess.run([sys.executable, "-c", scene.ADDITIONS], check=True)
     return now()[1] - begin
 
 
@@ -342,8 +335,8 @@ def main() -> None:
         )
         return
     print(
-        f"{ADDITIONS:,} additions in a loop take {loop:.2f} s here and {REFERENCE_S} s on the "
-        f"reference machine, where times are these x {REFERENCE_S / loop:.2f}"
+        f"ten million additions take {loop:.2f} s here and {scene.REFERENCE_S} s on the reference "
+        f"machine, where times are these x {scene.REFERENCE_S / loop:.2f}"
     )
     for rows in found:
         print("\n".join(table(rows)), flush=True)
@@ -352,7 +345,10 @@ def main() -> None:
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--command"]:
         print(json.dumps(command(sys.argv[2], float(sys.argv[3]))))
-    elif sys.argv[1:2] == ["--write"]:
+        sys.exit()
+    import scene  # what a command imports is for the command to import
+
+    if sys.argv[1:2] == ["--write"]:
         written(float(sys.argv[3]), int(sys.argv[4]), int(sys.argv[5]), Path(sys.argv[2]))
     else:
         main()

@@ -1,14 +1,24 @@
-"""How long named questions take in a large Actionary, and how one is made.
+"""How long named questions, a cold ``capar query`` and ``capar check`` take in a large Actionary.
 
-``python benchmarks/questions.py FROM TO --copies 25`` writes every observation of the Actionary
-FROM 25 times into the folder TO, under other names; ``python benchmarks/questions.py FOLDER`` asks
-FOLDER every question, about one capture and over all, and prints medians.
+``python benchmarks/questions.py [--copies 25]`` asks one in a temporary folder: the demo and four
+performed actions, each 25 times. ``questions.py FROM TO --copies 25`` writes every observation of
+the Actionary FROM 25 times into the folder TO, under other names; ``questions.py FOLDER`` asks
+FOLDER, with ``--capture``, ``--object`` and ``--performer`` of it. Questions are asked about one
+capture and over all, in one process that has the folder open, medians; a command is a process of
+its own, its processor time. ``--first`` leaves out all but so many actions and questions of each
+kind.
 """
 
 import argparse
+import resource
 import statistics
+import subprocess
+import sys
+import tempfile
 import time
 from collections import defaultdict
+from dataclasses import replace
+from importlib import resources
 from pathlib import Path
 
 from pyoxigraph import Literal, NamedNode, Quad
@@ -17,6 +27,7 @@ from kb.actionary import Actionary
 from kb.store.names import GRAPHS, OBSERVATION
 from kb.store.stores import EmbeddedStore
 
+PERFORMED = ("touch", "slide", "pick_up", "pour")
 REPEATS = 5
 LONGEST_S = 20.0
 """A question that takes longer is asked once."""
@@ -121,29 +132,79 @@ def asked(actionary: Actionary, line: str, given: dict[str, str], scope: dict[st
     print(f"{statistics.median(times) * 1e3:10.0f} ms {rows:7,} rows  {name} {told}", flush=True)
 
 
+def example(folder: Path, most: int | None) -> None:
+    """Write an Actionary of the demo and of some performed actions, no more of them than that."""
+    from capar.body.scripted_actions import action_capture
+    from capar.pipelines.observation import observe
+
+    demo = Path(str(resources.files("capar"))) / "demo" / "drink_from_mug"
+    with Actionary.open(folder) as actionary:
+        actionary.add(observe(demo))
+        for action in PERFORMED[:most]:
+            # A name that is no word of anything else, as copies replace it wherever it stands.
+            capture = replace(action_capture(action, rate_hz=30.0), name=f"performed_{action}")
+            actionary.add(observe(capture))
+
+
+def command(*arguments: str) -> float:
+    """Run a command a few times, print the median of its processor time, and return it [ms]."""
+    times = []
+    for _ in range(3):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        line = [sys.executable, "-c", "from capar.cli import main; main()", *arguments]
+        subprocess.run(line, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        times.append(spent)
+        if spent > 5.0:
+            break
+    taken_ms = statistics.median(times) * 1e3
+    print(f"{taken_ms:10.0f} ms               {' '.join(arguments[:-2])}", flush=True)
+    return taken_ms
+
+
+def asked_all(folder: Path, options: argparse.Namespace) -> None:
+    """Ask every question, and the commands."""
+    capture = options.capture
+    given = {"object": options.object, "body": options.object, "performer": options.performer}
+    given |= {"observation": capture, "time": "2"}
+    with Actionary.open(folder, read_only=True) as actionary:
+        every = actionary.observations()
+        recorded_s = sum(each.duration_s for each in every)
+        print(f"{len(every)} observations of {recorded_s:.0f} s")
+        print("of one capture")
+        for line in OF_CAPTURE[: options.first]:
+            asked(actionary, line, given, {"capture": capture})
+        print("over all")
+        for line in OVER_ALL[: options.first]:
+            asked(actionary, line, given, {})
+    print("commands")
+    command("query", "segments", f"capture={capture}", "--actionary", str(folder))
+    taken_ms = command("check", "--actionary", str(folder))
+    print(f"{taken_ms / recorded_s:10.1f} ms               of check for each second of recording")
+
+
 def main() -> None:
     """Copy an Actionary, or ask one."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path)
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, nargs="?")
     parser.add_argument("target", type=Path, nargs="?")
     parser.add_argument("--copies", type=int, default=25)
-    parser.add_argument("--capture", default="bimacs_optitrack:take0")
-    parser.add_argument("--object", default="bottle")
+    parser.add_argument("--first", type=int, help="ask no more questions of each kind")
+    parser.add_argument("--capture", default="drink_from_mug_tall_man")
+    parser.add_argument("--object", default="mug")
     parser.add_argument("--performer", default="tall_man")
     options = parser.parse_args()
     if options.target:
         copies(options.folder, options.target, options.copies)
-        return
-    capture = options.capture
-    given = {"object": options.object, "body": options.object, "performer": options.performer}
-    given |= {"observation": capture, "time": "5"}
-    with Actionary.open(options.folder, read_only=True) as actionary:
-        print("of one capture")
-        for line in OF_CAPTURE:
-            asked(actionary, line, given, {"capture": capture})
-        print("over all")
-        for line in OVER_ALL:
-            asked(actionary, line, given, {})
+    elif options.folder:
+        asked_all(options.folder, options)
+    else:
+        with tempfile.TemporaryDirectory() as made:
+            one, many = Path(made) / "one", Path(made) / "many"
+            example(one, options.first)
+            copies(one, many, options.copies)
+            asked_all(many, options)
 
 
 if __name__ == "__main__":

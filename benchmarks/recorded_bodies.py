@@ -1,7 +1,9 @@
 """Bodies fitted to recordings that others made: what is left of residuals, and how they stand.
 
-Run as ``CAPAR_DATA=DATA python benchmarks/recorded_bodies.py [FILTER ...]``. Recordings without a
-capture of their own in ``examples/`` are drafted first, as ``capar new-capture`` does.
+``python benchmarks/recorded_bodies.py [WORD ...]``: recordings whose names hold one of these words,
+``all``, or a box lift, a walk and a reach. Recordings without a capture of their own in
+``examples/`` are drafted first, as ``capar new-capture`` does. Without the recordings nothing is
+done.
 """
 
 import os
@@ -11,6 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+import scene
 
 from capar.body.body_fitting import fit_body, ground
 from capar.body.sensor_fitting import Fit
@@ -74,11 +77,14 @@ def row(name: str, place: str) -> str:
 
 def main() -> None:
     """Print the table."""
+    if not scene.recordings():
+        return
+    words = sys.argv[1:] or ["box lift", "walk.bvh", "ReachForwardHigh"]
     print("| recording | followed | median [mm] | 95 % [mm] | over 30 mm | worst of medians [mm] "
           "| sole above floor [mm] | stature [m] | time / motion |")  # fmt: skip
     print("|---|---|---|---|---|---|---|---|---|")
     for name, place in places():
-        if not sys.argv[1:] or any(word in name for word in sys.argv[1:]):
+        if words == ["all"] or any(word in name for word in words):
             print(row(name, place), flush=True)
 
 

@@ -1,7 +1,7 @@
 """Round trips of actions on three bodies in drawn scenes, and what a regeneration takes.
 
-Run as ``PYTHONPATH=.:tests python benchmarks/regeneration.py [ACTION ...]``; ``--speed`` times the
-parts of two regenerations at 100 Hz instead.
+``python benchmarks/regeneration.py`` times the parts of two regenerations at 100 Hz; with ACTIONs
+or ``all`` it makes round trips of these, ``--scenes`` of each for each body.
 """
 
 import argparse
@@ -68,15 +68,14 @@ def timed(action: str, agent: str, rate_hz: float) -> str:
 def main() -> None:
     """Do what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("actions", nargs="*", metavar="ACTION", help=", ".join(ACTIONS))
+    parser.add_argument("actions", nargs="*", metavar="ACTION", help=", ".join(("all", *ACTIONS)))
     parser.add_argument("--scenes", type=int, default=2, help="how many are drawn")
-    parser.add_argument("--speed", action="store_true", help="time the parts of two regenerations")
     asked = parser.parse_args()
-    if asked.speed:
-        for row in TIMED:
-            print(timed(*row), flush=True)
-    else:
-        performed(asked.actions or list(ACTIONS), asked.scenes)
+    if asked.actions:
+        performed(list(ACTIONS) if asked.actions == ["all"] else asked.actions, asked.scenes)
+        return
+    for row in TIMED:
+        print(timed(*row), flush=True)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,12 @@
-"""A capture of any length for the benchmarks: hands that handle objects of many triangles."""
+"""What benchmarks measure: a capture of any length, of hands that handle objects of many triangles.
 
+And the recordings of others, where they are.
+"""
+
+import os
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import trimesh
@@ -10,6 +15,25 @@ from capar.model.capture import Capture, Role, Sensor, Shape, Stream, TagObject,
 
 PERIOD_S = 12.0
 """One round: reach, carry, put down, reach the next, return."""
+
+ADDITIONS = "total = 0\nfor each in range(10_000_000):\n    total += each"
+REFERENCE_S = 0.7
+"""What this script takes on the machine to which figures of others are scaled [s]."""
+
+
+def recordings() -> bool:
+    """Whether the recordings of others are there; without, it is said that they are not.
+
+    They are in the folder that ``CAPAR_DATA`` names, or in ``../shared/data`` beside the checkout;
+    the examples then find them.
+    """
+    beside = Path(__file__).resolve().parents[2] / "shared" / "data"
+    folder = Path(os.environ.get("CAPAR_DATA") or beside)
+    if not folder.is_dir():
+        print("no recordings of others: set CAPAR_DATA to their folder")
+        return False
+    os.environ["CAPAR_DATA"] = str(folder)
+    return True
 
 
 def shape(mesh: trimesh.Trimesh) -> Shape:

@@ -1,35 +1,37 @@
 """Twenty requests in words, performed or refused: which came out as they should.
 
-Run as ``PYTHONPATH=.:tests python benchmarks/spoken_requests.py FOLDER [AGENT]``;
-the recordings are made and observed in FOLDER unless they are there.
+``python benchmarks/spoken_requests.py [--agent man] [--folder FOLDER] [--first 20]``: recordings of
+the five actions that the requests were written for are made and observed in FOLDER, unless they are
+there; without FOLDER in a temporary one.
 """
 
+import argparse
 import sys
+import tempfile
 import time
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 from spoken_worlds import RATE_HZ, Spoken, spoken, understood, world
 
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.recording import truth_of, write_bundle
-from capar.body.scripted_actions import ACTIONS, action_capture, performed
+from capar.body.scripted_actions import action_capture, performed
 from capar.model.errors import CaparError
 from capar.pipelines.observation import observe
 from capar.pipelines.recordings import Recording, stored_recordings
 from capar.pipelines.spoken_requests import after, perform
 from kb import Actionary
 
-LATER = {"touch_from_rest", "carry_tray", "carry_two"}
-RECORDED = [action for action in ACTIONS if action not in LATER]
-"""What the requests were written for: a hand that stays where it touches and a tray came later."""
 
-
-def recordings(folder: Path) -> tuple[Recording, ...]:
-    """Recordings of the virtual man, in an Actionary."""
+def recordings(folder: Path, requests: list[Spoken]) -> tuple[Recording, ...]:
+    """Recordings of the virtual man that requests are served by, in an Actionary."""
+    recorded = sorted({name for each in requests for names in each.performs for name in names})
     with Actionary.open(folder / "actionary") as words:
         known = {stored.name for stored in words.observations()}
-        for action in RECORDED:
+        for action in recorded:
             if action not in known:
                 made = truth_of(performed(action, rate_hz=RATE_HZ))
                 write_bundle(action_capture(action, rate_hz=RATE_HZ), made, folder / action)
@@ -66,9 +68,9 @@ def performing(each: Spoken, known: tuple[Recording, ...], agent: str) -> tuple[
     return not each.refused, f"performed: {'; '.join(told)}"
 
 
-def run(known: tuple[Recording, ...], agent: str) -> None:
+def run(requests: list[Spoken], known: tuple[Recording, ...], agent: str) -> None:
     """First what is understood of every request, then the performances."""
-    rows = {request: understanding(request, known) for request in spoken()}
+    rows = {request: understanding(request, known) for request in requests}
     for each, (good, told) in rows.items():
         print(f"{'yes' if good else 'NO ':3}  {each.say!r} in {each.world}: {told}", flush=True)
     print(f"{sum(good for good, _ in rows.values())} of {len(rows)} understood as they should be")
@@ -87,5 +89,16 @@ def run(known: tuple[Recording, ...], agent: str) -> None:
     print(f"{right} of {len(rows)} as they should be")
 
 
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--agent", default="man", help="who performs: man, woman or child")
+    parser.add_argument("--folder", type=Path, help="of the recordings")
+    parser.add_argument("--first", type=int, default=20, help="how many requests")
+    asked = parser.parse_args()
+    requests = spoken()[: asked.first]
+    with tempfile.TemporaryDirectory() as made:
+        run(requests, recordings(asked.folder or Path(made), requests), asked.agent)
+
+
 if __name__ == "__main__":
-    run(recordings(Path(sys.argv[1])), sys.argv[2] if len(sys.argv) > 2 else "man")
+    main()

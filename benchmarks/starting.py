@@ -1,8 +1,9 @@
 """Processor and wall time of commands from a cold start.
 
-Run by hand: ``python benchmarks/starting.py [--runs 10] [--json]``. Each command is a process of
-its own; bytecode is there, as after any installation and first run. Commands take turns, so that
-a machine whose speed changes treats them alike.
+``python benchmarks/starting.py [--runs 10] [--json]``: each command is a process of its own; a
+first round, which may write bytecode, is left out, except with ``--runs 0``. Commands take turns,
+so that a machine whose speed changes treats them alike. Beside them ten million additions in a loop
+of Python, and what the median would be on the reference machine, where those take 0.7 s.
 """
 
 import argparse
@@ -13,6 +14,8 @@ import sys
 import time
 from importlib import resources
 from statistics import median
+
+import scene
 
 DEMO = str(resources.files("capar") / "demo" / "drink_from_mug")
 MAIN = "from capar.cli import main; main()"
@@ -25,6 +28,7 @@ COMMANDS = {
         "-c",
         "import numpy, scipy.spatial.transform, trimesh",
     ],
+    "ten million additions": [sys.executable, "-c", scene.ADDITIONS],
 }
 
 
@@ -43,29 +47,32 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=10)
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")
     asked = parser.parse_args()
-    for command in COMMANDS.values():
-        spent(command)
     found: dict[str, list[tuple[float, float]]] = {name: [] for name in COMMANDS}
-    for _ in range(asked.runs):
+    for _ in range(asked.runs + 1):
         for name, command in COMMANDS.items():
             found[name].append(spent(command))
     figures = {
         name: {
-            "processor_s": [round(f([run[0] for run in runs]), 3) for f in (min, median, max)],
-            "wall_s": [round(f([run[1] for run in runs]), 3) for f in (min, median, max)],
+            "processor_s": [
+                round(f([run[0] for run in runs[-asked.runs :]]), 3) for f in (min, median, max)
+            ],
+            "wall_s": [
+                round(f([run[1] for run in runs[-asked.runs :]]), 3) for f in (min, median, max)
+            ],
         }
         for name, runs in found.items()
     }
     if asked.json:
         print(json.dumps(figures, indent=2))
         return
-    print(f"{'':38}  processor time [s]     wall time [s]")
-    print(f"{'':38}  min   median  max      min   median  max")
+    scale = scene.REFERENCE_S / figures["ten million additions"]["processor_s"][1]
+    print(f"{'':38}  processor time [s]     wall time [s]       reference [s]")
+    print(f"{'':38}  min   median  max      min   median  max    processor")
     for name, row in figures.items():
         cells = [
             "  ".join(f"{each:5.2f}" for each in row[key]) for key in ("processor_s", "wall_s")
         ]
-        print(f"{name:38} {cells[0]}    {cells[1]}")
+        print(f"{name:38} {cells[0]}    {cells[1]}    {scale * row['processor_s'][1]:5.2f}")
 
 
 if __name__ == "__main__":
