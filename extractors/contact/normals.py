@@ -125,12 +125,16 @@ def places(
         along, across = divmod(both, 2 * MOST_STEPS)
         rows = np.flatnonzero((steps == both) & (length > 0.0))
         u, v = _spread(along, across)
-        points = some[rows, None, 0] + u[:, None] * one[rows, None]
-        points += v[:, None] * two[rows, None]
-        inside = geometry.every((points >= box[0]) & (points <= box[1]))
-        row = rows[np.nonzero(inside)[0]]
+        # Axis by axis: of a large triangle few places are in the box along the first.
+        row, cell = rows[:, None], np.arange(len(u))
+        columns: list[np.ndarray] = []
+        for axis in range(3):
+            column = some[row, 0, axis] + u[cell] * one[row, axis] + v[cell] * two[row, axis]
+            inside = (column >= box[0, axis]) & (column <= box[1, axis])
+            row, cell = (np.broadcast_to(each, inside.shape)[inside] for each in (row, cell))
+            columns = [each[inside] for each in (*columns, column)]
         areas = 0.5 * length[row] / len(u)
-        found.append((points[inside], normal[row] / length[row, None], areas))
+        found.append((np.stack(columns, axis=1), normal[row] / length[row, None], areas))
     points, normals, areas = (np.concatenate(each) for each in zip(*found, strict=True))
     return Places(points, normals, areas, outward)
 
