@@ -98,11 +98,15 @@ def lengths(vectors: Float[np.ndarray, "*some axes"]) -> Float[np.ndarray, "*som
 
     ``numpy.linalg.norm`` gives the same to the last bit in eight times the time.
     """
-    squares = vectors * vectors
-    total = squares[..., 0].copy()
-    for axis in range(1, squares.shape[-1]):
-        total += squares[..., axis]
-    return np.asarray(np.sqrt(total))
+    return np.asarray(np.sqrt(totals(vectors * vectors)))
+
+
+def totals(values: Float[np.ndarray, "*some axes"]) -> Float[np.ndarray, "*some"]:
+    """The sum of a few values along the last axis, as quickly."""
+    total = values[..., 0].copy()
+    for axis in range(1, values.shape[-1]):
+        total += values[..., axis]
+    return np.asarray(total)
 
 
 def every(holds: Bool[np.ndarray, "*some axes"]) -> Bool[np.ndarray, "*some"]:

@@ -108,15 +108,19 @@ def poses_of(
     is noise, which at the rim of a large table would exceed any tolerance.
     """
     filled = fill_gaps(body.stream, gap_s=thresholds.gap_s)
+    places, turns = filled.positions, filled.orientations
+    still = (
+        bool((places == places[0]).all() and (turns == turns[0]).all())
+        if known is None
+        else known.still
+    )
+    smooth = filled if still or filled.lost.all() else LowPassed(filled, thresholds)
     if known is None:
-        noise = noise_at_rest(filled, thresholds)
-        places, turns = filled.positions, filled.orientations
-        still = bool((places == places[0]).all() and (turns == turns[0]).all())
         fixed = _fixed_pose(body, filled)
+        low = smooth.positions if isinstance(smooth, LowPassed) and fixed is None else None
+        noise = noise_at_rest(filled, thresholds, low)
     else:
-        noise, still = Noise(known.noise_m, known.noise_rad), known.still
-        fixed = known.fixed
-    smooth = filled if still else filled if filled.lost.all() else LowPassed(filled, thresholds)
+        noise, fixed = Noise(known.noise_m, known.noise_rad), known.fixed
     if fixed is not None:
         settled = _held(filled, fixed)
     else:

@@ -146,7 +146,7 @@ def _bends(
     terms = [correlate1d(near, each, axis=0)[own] for each in (basis[0], basis[1], basis[3])]
     energy = width * correlate1d(near**2, np.full(width, 1.0 / width), axis=0)[own]
     terms.insert(2, square[fits])
-    left = (energy - sum(each**2 for each in terms)).sum(axis=1)
+    left = geometry.totals(energy - sum(each**2 for each in terms))
     misfit, most = np.sqrt(np.maximum(left, 0.0)), thresholds.flight_change_share * bend[fits]
     fits[fits] = (geometry.lengths(terms[3]) <= most) & (misfit <= most + allowed_m)
     return square, fits

@@ -189,25 +189,28 @@ class Noise:
     """Standard deviation of the rotation about one axis [rad]."""
 
 
-def noise_at_rest(stream: Stream, thresholds: Thresholds) -> Noise:
+def noise_at_rest(stream: Stream, thresholds: Thresholds, smooth: Places | None = None) -> Noise:
     """The stream's noise, robustly, from what the low-pass takes away.
+
+    ``smooth``: its low-passed places [m], if they are at hand.
 
     What is faster than the cutoff is noise whether the body rests or moves; its median size,
     over the share of white noise that lies above the cutoff, gives the whole. Stretches of
     quick motion or loose tracking count no more than any other outlier.
     """
     _, _, taken = gains(frame_rate(stream.times), thresholds)
-    place = _deviation(stream.positions, stream, thresholds)
+    if smooth is None:
+        smooth = lowpass(stream.positions, stream.times, thresholds)
+    place = _deviation(stream.positions - smooth, stream)
     # A small rotation changes the quaternion by half of its angle, along three directions.
-    turn = 2.0 * _deviation(stream.orientations, stream, thresholds)
+    left = stream.orientations - lowpass(stream.orientations, stream.times, thresholds)
+    turn = 2.0 * _deviation(left, stream)
     return Noise(place / taken, turn / taken)
 
 
-def _deviation(
-    values: Float[np.ndarray, "frames axes"], stream: Stream, thresholds: Thresholds
-) -> float:
-    rest = (values - lowpass(values, stream.times, thresholds))[~stream.lost]
-    return float(np.sqrt(np.median((rest**2).sum(axis=1)) / CHI_SQUARE)) if len(rest) else 0.0
+def _deviation(left: Float[np.ndarray, "frames axes"], stream: Stream) -> float:
+    rest = left[~stream.lost]
+    return float(np.sqrt(np.median(geometry.totals(rest**2)) / CHI_SQUARE)) if len(rest) else 0.0
 
 
 DEGREE = 3

@@ -19,7 +19,7 @@ from capar.model.facts import Touching
 from extractors.bodies.bodies import BodyGeometry, geometry_of
 from extractors.calibration import calibrate, set_values
 from extractors.contact.contacts import blow, bridged, set_going
-from extractors.contact.normals import facing_normal
+from extractors.contact.normals import facing_normal, places
 from extractors.contact.proximity import (
     Body,
     body,
@@ -209,6 +209,21 @@ def test_a_contact_that_noise_hides_at_the_recording_s_edge_lasts_up_to_it(
     found = bridged(one, other, edge=edge)
     extended = apart == 0 and hidden < edge
     assert (found == (other if extended else one)).all()
+
+
+@given(seed=st.integers(0, 9999), size_m=st.floats(0.02, 3.0))
+@settings(max_examples=40, deadline=None)
+def test_places_of_large_triangles_in_a_box_are_all_those_that_lie_in_it(
+    seed: int, size_m: float
+) -> None:
+    random = np.random.default_rng(seed)
+    triangles = random.normal(scale=size_m, size=(4, 3, 3))
+    ends = random.normal(scale=0.3 * size_m, size=(2, 3))
+    box, everywhere = np.sort(ends, axis=0), np.array([[-1e3] * 3, [1e3] * 3])
+    found, every = (places(triangles, where) for where in (box, everywhere))
+    inside = ((every.points >= box[0]) & (every.points <= box[1])).all(axis=1)
+    assert np.array_equal(found.points, every.points[inside])
+    assert np.array_equal(found.areas, every.areas[inside])
 
 
 def test_surfaces_are_apart_by_their_distance_and_by_none_where_one_body_is_in_another() -> None:
