@@ -1,5 +1,7 @@
 """The commands: thin modules that parse, call the library and print, each imported on demand."""
 
+import atexit
+import gc
 import os
 import sys
 from importlib import import_module
@@ -118,6 +120,7 @@ def _root(
 def main() -> None:
     """Run a command; a user's mistake exits with 2, rules that contradict each other with 1."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads spin, and sum in any order
+    atexit.register(gc.freeze)  # what is left at the end is not searched for cycles
     try:
         app()
     except NoAnswerError as error:

@@ -228,11 +228,12 @@ def fact_kind(
     """
 
     def define(cls: type[_Kind]) -> type[_Kind]:
-        kind = dataclass(frozen=True, slots=True, order=True)(cls)
+        own = "__annotations__" in vars(cls)  # else it has what its base has
+        kind = dataclass(frozen=True, slots=True, init=own, repr=own, eq=own, order=own)(cls)
         has = _arguments(cast(Any, kind))
         first = next(iter(has), "")
-        own = next(each for each in reversed(Span) if set(each.value) <= set(has))
-        made = Declaration(terms, first if has.get(first) is str else "", span or own, **declared)
+        holds = next(each for each in reversed(Span) if set(each.value) <= set(has))
+        made = Declaration(terms, first if has.get(first) is str else "", span or holds, **declared)
         names = _naming_fields(cast(Any, made.span)) if isinstance(made.span, type) else ()
         missing = {*names, *made.others, *_BRACES.findall(made.stretch)} - set(has)
         missing |= {each for each in made.powers if has.get(each) is not int}
