@@ -8,6 +8,7 @@ from dataclasses import replace
 from hashlib import sha256
 from itertools import groupby
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
@@ -35,7 +36,9 @@ from extractors.measure import Measurements, measure
 from extractors.readers.bundle.capture_toml import place_of, read_capture
 from extractors.segments import constraint_location, followed, moved_path, sampled_tracks, style
 from extractors.thresholds import Thresholds
-from kb.lookup.pars import Stored
+
+if TYPE_CHECKING:
+    from kb.lookup.pars import Stored
 
 
 def return_freed_memory() -> None:
@@ -224,7 +227,7 @@ def facts_program(
 
 def observe_again(
     files: Sequence[tuple[str, str]],
-    known: Stored,
+    known: "Stored",
     measured: tuple[Fact, ...],
     rules: Profile,
     places: Sequence[Path],

@@ -12,11 +12,13 @@ from jaxtyping import Float
 from pyoxigraph import Literal, NamedNode
 from pyoxigraph import Store as Oxigraph
 
-from capar.model.locations import SampledTrack
+from capar.model.geometry import Series
 from kb.store import names, statements
 from ontology import BASE, CAPAR
 
-Place: TypeAlias = Float[np.ndarray, "3"]
+Track: TypeAlias = tuple[Float[np.ndarray, "samples 3"], float]
+"""The places of a body [m], NaN where it was lost, and the time between two of them [s]; zero where
+one holds throughout."""
 
 
 def track_functions(store: Oxigraph) -> dict[NamedNode, Callable[..., Literal | None]]:
@@ -26,7 +28,7 @@ def track_functions(store: Oxigraph) -> dict[NamedNode, Callable[..., Literal | 
     """
 
     @cache
-    def track(observation: Any, body: Any) -> SampledTrack | None:
+    def track(observation: Any, body: Any) -> Track | None:
         """The track of a body, given by its IRI or by its name in an observation."""
         if isinstance(observation, Literal):
             observation = names.observation(observation.value)
@@ -39,7 +41,8 @@ def track_functions(store: Oxigraph) -> dict[NamedNode, Callable[..., Literal | 
         for node in nodes:
             for quad in store.quads_for_pattern(node, CAPAR.track, None, observation):
                 if isinstance(quad.object, Literal):
-                    return statements.track_of(quad.object.value)
+                    known = statements.track_of(quad.object.value)
+                    return known.positions, known.step_s
         return None
 
     def function(bodies: int, computed: Callable[..., Any]) -> Callable[..., Literal | None]:
@@ -58,16 +61,16 @@ def track_functions(store: Oxigraph) -> dict[NamedNode, Callable[..., Literal | 
 
         return called
 
-    def highest_speed(track: SampledTrack, start_s: float, end_s: float) -> Any:
-        return np.max([_speed(track, time) for time in _times(track, start_s, end_s)])
+    def highest_speed(track: Track, start_s: float, end_s: float) -> Any:
+        return np.max(_speeds(track, _times(track, start_s, end_s)))
 
-    def path_length(track: SampledTrack, start_s: float, end_s: float) -> Any:
-        places = np.array([_at(track, each) for each in _times(track, start_s, end_s)])
+    def path_length(track: Track, start_s: float, end_s: float) -> Any:
+        places = _at(track, _times(track, start_s, end_s))
         return np.linalg.norm(np.diff(places, axis=0), axis=1).sum()
 
     functions = {
         "position": function(1, _at),
-        "speed": function(1, _speed),
+        "speed": function(1, lambda track, time: _speeds(track, np.array([time]))[0]),
         "distance": function(2, lambda a, b, time: np.linalg.norm(_at(a, time) - _at(b, time))),
         "highestSpeed": function(1, highest_speed),
         "pathLength": function(1, path_length),
@@ -75,28 +78,33 @@ def track_functions(store: Oxigraph) -> dict[NamedNode, Callable[..., Literal | 
     return {NamedNode(BASE + name): each for name, each in functions.items()}
 
 
-def _at(track: SampledTrack, time_s: float) -> Place:
-    """The place at a time [m]; NaN where lost, or outside of the capture."""
-    if track.step_s == 0.0:
-        return np.asarray(track.positions[0])
-    clock = np.arange(len(track.positions)) * track.step_s
-    if not 0.0 <= time_s <= clock[-1] + 1e-6:
-        return np.full(3, np.nan)
-    return np.array([np.interp(time_s, clock, axis) for axis in track.positions.T])
+def _at(track: Track, times_s: float | Series) -> Float[np.ndarray, "*times 3"]:
+    """The places at times [m]; NaN where lost, or outside of the capture."""
+    places, step_s = track
+    times = np.asarray(times_s)
+    if step_s == 0.0:
+        return np.broadcast_to(places[0], (*times.shape, 3))
+    clock = np.arange(len(places)) * step_s
+    found = np.stack([np.interp(times, clock, axis) for axis in places.T], axis=-1)
+    found[~((times >= 0.0) & (times <= clock[-1] + 1e-6))] = np.nan
+    return found
 
 
-def _speed(track: SampledTrack, time_s: float) -> float:
-    """The speed at a time [m/s], over a sample before and one after it."""
-    if track.step_s == 0.0:
-        return 0.0
-    end_s = (len(track.positions) - 1) * track.step_s
-    first, last = max(time_s - track.step_s, 0.0), min(time_s + track.step_s, end_s)
-    return float(np.linalg.norm(_at(track, last) - _at(track, first)) / (last - first))
+def _speeds(track: Track, times_s: Series) -> Series:
+    """The speeds at times [m/s], each over a sample before and one after it."""
+    places, step_s = track
+    if step_s == 0.0:
+        return np.zeros(len(times_s))
+    end_s = (len(places) - 1) * step_s
+    first, last = np.maximum(times_s - step_s, 0.0), np.minimum(times_s + step_s, end_s)
+    ways = _at(track, last) - _at(track, first)
+    return np.array([np.linalg.norm(way) for way in ways]) / (last - first)
 
 
-def _times(track: SampledTrack, start_s: float, end_s: float) -> list[float]:
+def _times(track: Track, start_s: float, end_s: float) -> Series:
     """Two times in order, and those of the samples between them [s]."""
-    if track.step_s == 0.0:
-        return [start_s, end_s]
-    inner = np.arange(np.ceil(start_s / track.step_s), np.floor(end_s / track.step_s) + 1)
-    return [start_s, *(inner * track.step_s), end_s]
+    _, step_s = track
+    if step_s == 0.0:
+        return np.array([start_s, end_s])
+    inner = np.arange(np.ceil(start_s / step_s), np.floor(end_s / step_s) + 1)
+    return np.array([start_s, *(inner * step_s), end_s])
