@@ -100,7 +100,8 @@ class Actionary(Agents, AbstractContextManager["Actionary"]):
 
     def refresh(self) -> None:
         """See what others have written since it was opened."""
-        self.store.refresh()
+        if self.store.refresh():
+            updates.check_current(self.store)
 
     # Observations
 

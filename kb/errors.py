@@ -63,6 +63,23 @@ class TimeLimitError(QueryError):
         )
 
 
+class BusyError(CaparError):
+    """A question that a server does not answer now, as it has too many others."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(f"the server is busy ({reason}); ask again in a few seconds")
+
+
+class LostError(CaparError):
+    """A question whose process ended."""
+
+    def __init__(self, memory: int) -> None:
+        super().__init__(
+            f"the process that was to answer ended; it may hold {memory >> 20} MB. Ask again, or "
+            "narrow the query (bind a subject, add LIMIT)"
+        )
+
+
 class ExistsError(CaparError):
     """An observation whose name is already another capture's."""
 

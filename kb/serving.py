@@ -1,42 +1,59 @@
-"""An Actionary over HTTP: the SPARQL 1.1 protocol, and the named questions as JSON."""
+"""An Actionary over HTTP: the SPARQL 1.1 protocol, and the named questions as JSON.
 
+One process listens and hands each request to another one, which has the Actionary open.
+"""
+
+import asyncio
 import hmac
 import json
+import marshal
 import re
+import socket
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, field
+from contextlib import suppress
+from dataclasses import asdict
+from functools import lru_cache
 from html import escape
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from ipaddress import ip_address
-from socket import AF_INET6
-from typing import Any
-from urllib.parse import parse_qs, unquote, urlsplit
+from typing import Any, Self, TypeAlias
+from urllib.parse import parse_qs, urlsplit
 
+import uvicorn
 from pyoxigraph import (
-    BlankNode,
-    Literal,
-    NamedNode,
+    QueryBoolean,
     QueryResultsFormat,
+    QuerySolutions,
     RdfFormat,
-    parse_query_results,
     serialize,
 )
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import Response
+from starlette.types import Receive, Scope, Send
+from uvicorn.protocols.http.auto import AutoHTTPProtocol
 
 from capar.model.errors import CaparError, UnknownNameError
 from kb.actionary import TIME_LIMIT_S, Actionary
-from kb.errors import LockedError, StoreError, TimeLimitError
+from kb.errors import BusyError, LockedError, LostError, StoreError, TimeLimitError
 from kb.exchange import bring_in, export, read
 from kb.queries.questions import as_json, check_known, questions
 from kb.queries.questions import question as question_of
-from kb.store.answer_values import Answer, Found
+from kb.store import sparql
+from kb.store.answer_values import Result
+from kb.store.stores import LONGEST_S, check_time_limit
 from kb.store.updates import SCHEMA
-from ontology.namespace import XSD
+from kb.workers import Answering, Workers
 
 LARGEST_BODY = 256 << 20
 """How many bytes a request may hold."""
 
 PATIENCE_S = 60.0
 """How long a connection may be silent [s]."""
+
+BACKLOG, LONGEST_HEAD = 2048, 1 << 17
+"""How many connections may wait to be taken, and how many bytes the head of a request may hold."""
+
+RETRY_S = 2
+"""When a client may ask again for what was not answered now [s]."""
 
 RESULTS = {
     "application/sparql-results+json": QueryResultsFormat.JSON,
@@ -66,39 +83,6 @@ EXPORTS = {
 """Media types of exports and imports, with the names of their formats."""
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
-    """One HTTP request."""
-
-    method: str
-    path: str
-    """Without what follows a question mark, percent signs resolved."""
-
-    query: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """Values by name of what follows it."""
-
-    headers: Mapping[str, str] = field(default_factory=dict)
-    """By their names in small letters."""
-
-    body: bytes = b""
-
-    @property
-    def media_type(self) -> str:
-        """Of the body, without parameters."""
-        return self.headers.get("content-type", "").partition(";")[0].strip().lower()
-
-
-@dataclass(frozen=True, slots=True)
-class Response:
-    """One HTTP response."""
-
-    status: int
-    media_type: str
-    body: bytes
-    allow: str = ""
-    """The methods that the path has, where it has not the one that was asked."""
-
-
 class RefusedError(CaparError):
     """A request that is not answered, with the status that says why."""
 
@@ -108,77 +92,92 @@ class RefusedError(CaparError):
         super().__init__(message)
 
 
-STATUSES = ((TimeLimitError, 503), (LockedError, 503), (UnknownNameError, 404), (CaparError, 400))
+STATUSES = (
+    ((TimeLimitError, LockedError, BusyError, LostError), 503),
+    (UnknownNameError, 404),
+    (CaparError, 400),
+)
 """The status of each error; the first that fits."""
 
 
-@dataclass(frozen=True, slots=True)
 class Service:
-    """An Actionary's answers; each request opens it anew, so it sees what others wrote."""
+    """An Actionary's answers; it is kept open, and opened anew when others have written."""
 
-    place: str
-    """Folder or address."""
+    def __init__(self, place: str, token: str = "", *, seconds: float = TIME_LIMIT_S) -> None:
+        """Say what is served.
 
-    token: str = ""
-    """What a client that writes must bear; empty where nobody may write."""
+        Args:
+            place: Folder or address.
+            token: What a client that writes must bear; empty where nobody may write.
+            seconds: How long a server takes for an answer at most [s].
 
-    seconds: float = TIME_LIMIT_S
-    """How long a query may take [s]."""
+        Raises:
+            QueryError: So many seconds are no time limit.
+        """
+        check_time_limit(seconds)
+        self.place, self.token, self.seconds = place, token, min(seconds, LONGEST_S)
+        self._kept: Actionary | None = None
 
-    def answer(self, request: Request) -> Response:
+    def begin(self) -> Answering:
+        """Open the Actionary, if it can be, in a process that answers for a server."""
+        with suppress(CaparError):
+            self._opened()
+        return self._answer_message
+
+    def _answer_message(self, message: bytes) -> bytes:
+        method, path, query, headers, body = marshal.loads(message)
+        scope = {"type": "http", "method": method, "path": path, "query_string": query}
+        response = self.answer(Request(scope | {"headers": headers}), body)
+        return marshal.dumps((response.status_code, response.raw_headers, response.body))
+
+    def answer(self, request: Request, body: bytes = b"") -> Response:
         """The response to a request, errors included."""
         try:
-            return self._answered(request)
-        except RefusedError as error:
-            return _json({"error": str(error)}, status=error.status, allow=error.allow)
+            self.check(request)
+            route, name = _parts(request)
+            return ROUTES[route][request.method](self, request, body, name)
         except CaparError as error:
-            status = next(code for kind, code in STATUSES if isinstance(error, kind))
-            return _json({"error": str(error)}, status=status)
+            return refusal(error)
 
-    def _answered(self, request: Request) -> Response:
-        first, _, rest = request.path.strip("/").partition("/")
-        routes: dict[str, dict[str, Callable[[Request, str], Response]]] = {
-            "": {"GET": lambda *_: Response(200, "text/html; charset=utf-8", page().encode())},
-            "openapi.json": {"GET": lambda *_: _json(description())},
-            "query": {"GET": self._query, "POST": self._query},
-            "questions": {"GET": self._question},
-            "observations": {"GET": self._observation},
-            "statements": {"POST": self._statements},
-        }
-        methods = routes.get(first, {})
-        if not methods or (rest and first not in {"questions", "observations"}):
-            listed = ", ".join(f"/{route}" for route in routes)
-            raise RefusedError(404, f"there is no {request.path}; there are {listed}")
+    def check(self, request: Request) -> None:
+        """Check a request before its body is read.
+
+        Raises:
+            RefusedError: There is no such path, it has no such method, or writing is refused.
+        """
+        route, name = _parts(request)
+        methods = ROUTES.get(route, {})
+        path = request.scope["path"]
+        if not methods or (name and route not in {"questions", "observations"}):
+            listed = ", ".join(f"/{route}" for route in ROUTES)
+            raise RefusedError(404, f"there is no {path}; there are {listed}")
         if request.method not in methods:
             allowed = ", ".join(methods)
-            raise RefusedError(405, f"{request.path} takes {allowed}", allow=allowed)
-        return methods[request.method](request, unquote(rest))
+            raise RefusedError(405, f"{path} takes {allowed}", allow=allowed)
+        if not writes(request):
+            return
+        if not self.token:
+            raise RefusedError(
+                403, "this server only reads; `capar serve --token` lets clients write"
+            )
+        given = request.headers.get("authorization", "")
+        if not hmac.compare_digest(given.encode(), f"Bearer {self.token}".encode()):
+            raise RefusedError(401, "writing needs the header Authorization: Bearer TOKEN")
 
-    def _query(self, request: Request, _: str) -> Response:
-        given = dict(request.query)
-        if request.method == "POST":
-            try:
-                text = request.body.decode()
-            except UnicodeDecodeError:
-                raise RefusedError(400, "the query is not UTF-8") from None
-            if request.media_type == "application/sparql-query":
-                given["query"] = (text,)
-            elif request.media_type == "application/x-www-form-urlencoded":
-                given |= {name: tuple(values) for name, values in parse_qs(text).items()}
-            else:
-                raise RefusedError(
-                    415, "send application/sparql-query or application/x-www-form-urlencoded"
-                )
-        if {"default-graph-uri", "named-graph-uri"} & given.keys():
-            raise RefusedError(400, "state graphs in the query, by FROM or GRAPH")
-        asked = given.get("query", ())
-        if len(asked) != 1:
-            raise RefusedError(400, "send one query")
-        with self._opened() as actionary:
-            found = actionary.query(asked[0], seconds=self.seconds)
-        return Response(200, *encoded(found, request.headers.get("accept", "")))
+    def _page(self, request: Request, body: bytes, name: str) -> Response:
+        return _response(page().encode(), "text/html; charset=utf-8")
 
-    def _question(self, request: Request, name: str) -> Response:
+    def _description(self, request: Request, body: bytes, name: str) -> Response:
+        return _json(description())
+
+    def _query(self, request: Request, body: bytes, name: str) -> Response:
+        kind = (_media_type(request) or "none") if request.method == "POST" else ""
+        query = _asked(request.scope["query_string"], kind, body)
+        accept = request.headers.get("accept", "")
+        store = self._opened().store
+        return _response(*store.answered(query, lambda found: encoded(found, accept)))
+
+    def _question(self, request: Request, body: bytes, name: str) -> Response:
         if not name:
             return _json(
                 [
@@ -190,44 +189,118 @@ class Service:
                     for each in questions().values()
                 ]
             )
-        given = {key: values[-1] for key, values in request.query.items()}
+        given = dict(request.query_params)
         text = question_of(name).bind(given)
-        with self._opened() as actionary:
-            found = actionary.store.ask_within(text, seconds=self.seconds)
-            if not found.rows:
-                check_known(actionary.store, question_of(name), given)
-        return Response(200, "application/json", as_json(found).encode())
+        store = self._opened().store
+        found = store.ask(text)
+        if not found.rows:
+            check_known(store, question_of(name), given)
+        return _response(as_json(found).encode(), "application/json")
 
-    def _observation(self, request: Request, name: str) -> Response:
-        with self._opened() as actionary:
-            if not name:
-                return _json([asdict(observation) for observation in actionary.observations()])
-            kind = chosen(request.headers.get("accept", ""), EXPORTS)
-            return Response(200, kind, export(actionary.store, EXPORTS[kind], observation=name))
+    def _observation(self, request: Request, body: bytes, name: str) -> Response:
+        actionary = self._opened()
+        if not name:
+            return _json([asdict(observation) for observation in actionary.observations()])
+        kind = chosen(request.headers.get("accept", ""), EXPORTS)
+        return _response(export(actionary.store, EXPORTS[kind], observation=name), kind)
 
-    def _statements(self, request: Request, _: str) -> Response:
-        if not self.token:
-            raise RefusedError(
-                403, "this server only reads; `capar serve --token` lets clients write"
-            )
-        given = request.headers.get("authorization", "")
-        if not hmac.compare_digest(given.encode(), f"Bearer {self.token}".encode()):
-            raise RefusedError(401, "writing needs the header Authorization: Bearer TOKEN")
-        form = EXPORTS.get(request.media_type)
+    def _statements(self, request: Request, body: bytes, name: str) -> Response:
+        form = EXPORTS.get(_media_type(request))
         if form is None:
             raise RefusedError(415, f"send one of {', '.join(EXPORTS)}")
-        quads = read(request.body, form, path="the request")
+        quads = read(body, form, path="the request")
         with Actionary.open(self.place) as actionary:
             statements, observations = bring_in(actionary.store, quads, source="the request")
         return _json({"statements": statements, "observations": observations})
 
     def _opened(self) -> Actionary:
-        return Actionary.open(self.place, read_only=True)
+        """The Actionary as it is now."""
+        if self._kept is None:
+            self._kept = Actionary.open(self.place, read_only=True)
+        else:
+            self._kept.refresh()
+        return self._kept
 
 
-def _json(value: object, *, status: int = 200, allow: str = "") -> Response:
+_Answered: TypeAlias = Callable[[Service, Request, bytes, str], Response]
+
+ROUTES: Mapping[str, Mapping[str, _Answered]] = {
+    "": {"GET": Service._page},
+    "openapi.json": {"GET": Service._description},
+    "query": {"GET": Service._query, "POST": Service._query},
+    "questions": {"GET": Service._question},
+    "observations": {"GET": Service._observation},
+    "statements": {"POST": Service._statements},
+}
+"""What answers, by the first part of a path and the method."""
+
+
+def _parts(request: Request) -> tuple[str, str]:
+    route, _, name = request.scope["path"].strip("/").partition("/")
+    return route, name
+
+
+def writes(request: Request) -> bool:
+    """Whether a request is one to write."""
+    return request.method == "POST" and _parts(request)[0] == "statements"
+
+
+def _media_type(request: Request) -> str:
+    return request.headers.get("content-type", "").partition(";")[0].strip().lower()
+
+
+@lru_cache
+def _asked(query_string: bytes, kind: str, body: bytes) -> str:
+    """The query of a request, prepared; a body has a kind."""
+    given = parse_qs(query_string.decode("latin-1"), keep_blank_values=True)
+    if kind:
+        try:
+            text = body.decode()
+        except UnicodeDecodeError:
+            raise RefusedError(400, "the query is not UTF-8") from None
+        if kind == "application/sparql-query":
+            given["query"] = [text]
+        elif kind == "application/x-www-form-urlencoded":
+            given |= parse_qs(text)
+        else:
+            raise RefusedError(
+                415, "send application/sparql-query or application/x-www-form-urlencoded"
+            )
+    if {"default-graph-uri", "named-graph-uri"} & given.keys():
+        raise RefusedError(400, "state graphs in the query, by FROM or GRAPH")
+    asked = given.get("query", ())
+    if len(asked) != 1:
+        raise RefusedError(400, "send one query")
+    return sparql.prepare(asked[0])
+
+
+def _response(body: bytes, kind: str, status: int = 200, **headers: str) -> Response:
+    stated = {"content-type": kind, "x-content-type-options": "nosniff"}
+    return Response(body, status, headers=stated | headers)
+
+
+def _json(value: object, status: int = 200, **headers: str) -> Response:
     body = json.dumps(value, ensure_ascii=False).encode()
-    return Response(status, "application/json", body, allow)
+    return _response(body, "application/json", status, **headers)
+
+
+def refusal(error: CaparError) -> Response:
+    """The response that states an error."""
+    headers = {}
+    if isinstance(error, RefusedError):
+        status = error.status
+        if status in {408, 411, 413}:
+            return _response(
+                f"{error}\n".encode(), "text/plain; charset=utf-8", status, connection="close"
+            )
+        headers = {"allow": error.allow} if error.allow else {}
+    else:
+        status = next(code for kinds, code in STATUSES if isinstance(error, kinds))
+    if status == 401:
+        headers["www-authenticate"] = "Bearer"
+    if status == 503:
+        headers["retry-after"] = str(RETRY_S)
+    return _json({"error": str(error)}, status, **headers)
 
 
 # Media types
@@ -240,6 +313,8 @@ def chosen(accept: str, offered: Iterable[str]) -> str:
         RefusedError: It accepts none of them.
     """
     known = list(offered)
+    if accept in known:
+        return accept
     wanted = {}
     for part in (accept or "*/*").split(","):
         pattern, *parameters = (each.strip() for each in part.split(";"))
@@ -259,42 +334,17 @@ def chosen(accept: str, offered: Iterable[str]) -> str:
     return best
 
 
-def encoded(answer: Answer, accept: str) -> tuple[str, bytes]:
-    """An answer's media type and bytes.
+def encoded(found: Result, accept: str) -> tuple[bytes, str]:
+    """An answer's bytes and media type.
 
     Raises:
         RefusedError: The client accepts none that there are for such an answer.
     """
-    if answer.triples is not None:
-        kind = chosen(accept, GRAPHS)
-        return kind, serialize(answer.triples, format=GRAPHS[kind]) or b""
-    kind = chosen(accept, RESULTS)
-    document: dict[str, Any] = {"head": {}, "boolean": answer.boolean}
-    if answer.boolean is None:
-        rows = [
-            {name: _term(term) for name, term in zip(answer.variables, row, strict=True) if term}
-            for row in answer.rows
-        ]
-        document = {"head": {"vars": list(answer.variables)}, "results": {"bindings": rows}}
-    stated = json.dumps(document).encode()
-    if RESULTS[kind] == QueryResultsFormat.JSON:
-        return kind, stated
-    results = parse_query_results(stated, format=QueryResultsFormat.JSON)
-    return kind, results.serialize(format=RESULTS[kind]) or b""
-
-
-def _term(term: Found) -> Mapping[str, str]:
-    if isinstance(term, NamedNode):
-        return {"type": "uri", "value": term.value}
-    if isinstance(term, BlankNode):
-        return {"type": "bnode", "value": term.value}
-    if not isinstance(term, Literal):
-        raise RefusedError(501, "quoted triples are not written in results")
-    stated = {"type": "literal", "value": term.value}
-    if term.language:
-        return stated | {"xml:lang": term.language}
-    plain = term.datatype.value == XSD + "string"
-    return stated if plain else stated | {"datatype": term.datatype.value}
+    if isinstance(found, QueryBoolean | QuerySolutions):
+        kind = chosen(accept, RESULTS)
+        return found.serialize(format=RESULTS[kind]) or b"", kind
+    kind = chosen(accept, GRAPHS)
+    return serialize(dict.fromkeys(found), format=GRAPHS[kind]) or b"", kind
 
 
 # What is offered
@@ -367,34 +417,144 @@ def page() -> str:
 # Sockets
 
 
-class ActionaryServer(ThreadingHTTPServer):
-    """Listens until it is shut down; a thread for each connection."""
-
-    daemon_threads = True
+class ActionaryServer(uvicorn.Server):
+    """Listens until it is shut down; what it starts ends with it."""
 
     def __init__(self, service: Service, *, host: str = "127.0.0.1", port: int = 7879) -> None:
-        """Take the port; 0 for any that is free.
+        """Take the port, 0 for any that is free, and start the processes that answer.
 
         Raises:
             StoreError: It cannot listen there.
         """
         self.service = service
         self.loopback = is_loopback(host)
-        if ":" in host:
-            self.address_family = AF_INET6
         try:
-            super().__init__((host, port), _Handler)
+            family = socket.AF_INET6 if ":" in host else socket.AF_INET
+            dual = family == socket.AF_INET6 and socket.has_dualstack_ipv6()
+            self._socket = socket.create_server(
+                (host, port), family=family, backlog=BACKLOG, dualstack_ipv6=dual
+            )
         except (OSError, OverflowError) as error:
             raise StoreError(
                 f"{host}:{port}: cannot listen there ({error}); try another --port"
             ) from None
+        super().__init__(
+            uvicorn.Config(
+                self._answer,
+                interface="asgi3",
+                http=_Connection,
+                ws="none",
+                lifespan="off",
+                log_config=None,
+                log_level="error",
+                access_log=False,
+                server_header=False,
+                proxy_headers=False,
+                backlog=BACKLOG,
+                timeout_keep_alive=int(PATIENCE_S),
+                timeout_graceful_shutdown=1,
+                h11_max_incomplete_event_size=LONGEST_HEAD,
+            )
+        )
+        self._workers = Workers(service.begin, seconds=service.seconds)
+
+    def __enter__(self) -> Self:
+        """Listen already; who connects waits."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Leave nothing running."""
+        self._workers.close()
+        self._socket.close()
 
     @property
     def url(self) -> str:
         """Where it is."""
-        host, port = self.server_address[:2]
-        name = str(host)
-        return f"http://{f'[{name}]' if ':' in name else name}:{port}/"
+        host, port = self._socket.getsockname()[:2]
+        return f"http://{f'[{host}]' if ':' in host else host}:{port}/"
+
+    def serve_forever(self) -> None:
+        """Answer until ``should_exit`` is set, or a signal says so."""
+        self.run(sockets=[self._socket])
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Look after the processes, and answer."""
+        self._watching = asyncio.create_task(self._workers.watch())
+        await super().startup(sockets)
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """End the processes and what they are at, then the connections."""
+        self._watching.cancel()
+        self._workers.close()
+        await super().shutdown(sockets)
+
+    async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
+        asked = Request({**scope, "method": "GET"} if scope["method"] == "HEAD" else scope, receive)
+        try:
+            self._check_head(asked)
+            self.service.check(asked)
+            status, headers, body = marshal.loads(await self._answered(asked))
+        except ClientDisconnect:
+            return
+        except CaparError as error:
+            await refusal(error)(scope, receive, send)
+            return
+        await send({"type": "http.response.start", "status": status, "headers": headers})
+        await send({"type": "http.response.body", "body": body})
+
+    def _check_head(self, request: Request) -> None:
+        """Refuse a foreign host's name, or a body without end."""
+        length = request.headers.get("content-length")
+        if self.loopback and not _names_loopback(request.headers.get("host", "")):
+            raise RefusedError(403, "ask for it by the name localhost or a loopback address")
+        if request.method == "POST" and (length is None or not length.isdecimal()):
+            raise RefusedError(411, "say how long the body is: Content-Length")
+        if length is not None and int(length) > LARGEST_BODY:
+            raise RefusedError(413, f"a body may hold {LARGEST_BODY} bytes at most")
+
+    async def _answered(self, request: Request) -> bytes:
+        body, more = bytearray(), request.method == "POST"
+        while more:
+            try:
+                async with asyncio.timeout(PATIENCE_S):
+                    part = await request.receive()
+            except TimeoutError:
+                raise RefusedError(408, "the body did not come") from None
+            if part["type"] == "http.disconnect":
+                raise ClientDisconnect
+            body += part.get("body", b"")
+            more = part.get("more_body", False)
+        scope = request.scope
+        given = (scope["method"], scope["path"], scope["query_string"], scope["headers"])
+        message = marshal.dumps((*given, bytes(body)))
+        if writes(request):
+            return await self._workers.answer_alone(message)
+        return await self._workers.answer(message, request.is_disconnected)
+
+
+class _Connection(AutoHTTPProtocol):  # type: ignore[misc, valid-type]
+    """A connection that is closed where no request comes."""
+
+    def connection_made(self, transport: asyncio.Transport) -> None:
+        super().connection_made(transport)
+        self._silent = self.loop.call_later(PATIENCE_S, self._close_if_silent)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._silent.cancel()
+        super().connection_lost(exc)
+
+    def _close_if_silent(self) -> None:
+        if self.cycle is None:
+            self.transport.close()
+
+
+@lru_cache
+def _names_loopback(host: str) -> bool:
+    """Whether the header Host names this computer alone."""
+    try:
+        return is_loopback(urlsplit(f"//{host}").hostname or "")
+    except ValueError:
+        return False
 
 
 def is_loopback(host: str) -> bool:
@@ -406,59 +566,3 @@ def is_loopback(host: str) -> bool:
         return ip_address(name).is_loopback
     except ValueError:
         return False
-
-
-class _Handler(BaseHTTPRequestHandler):
-    protocol_version = "HTTP/1.1"
-    timeout = PATIENCE_S
-    server: ActionaryServer
-
-    def do_GET(self) -> None:
-        """Answer; HEAD without the body."""
-        response = self._refused() or self.server.service.answer(self._request())
-        self.send_response(response.status)
-        self.send_header("Content-Type", response.media_type)
-        self.send_header("Content-Length", str(len(response.body)))
-        self.send_header("X-Content-Type-Options", "nosniff")
-        if response.allow:
-            self.send_header("Allow", response.allow)
-        if response.status == 401:
-            self.send_header("WWW-Authenticate", "Bearer")
-        if response.status in {411, 413}:
-            self.close_connection = True
-            self.send_header("Connection", "close")
-        self.end_headers()
-        if self.command != "HEAD":
-            self.wfile.write(response.body)
-
-    do_HEAD = do_GET  # noqa: N815
-    do_POST = do_GET  # noqa: N815
-
-    def _refused(self) -> Response | None:
-        """Why a request is not even read: a foreign host's name, or a body without end."""
-        host = urlsplit(f"//{self.headers.get('Host', '')}").hostname or ""
-        length = self.headers.get("Content-Length")
-        if self.server.loopback and not is_loopback(host):
-            status, why = 403, "ask for it by the name localhost or a loopback address"
-        elif self.command == "POST" and (length is None or not length.isdecimal()):
-            status, why = 411, "say how long the body is: Content-Length"
-        elif length is not None and int(length) > LARGEST_BODY:
-            status, why = 413, f"a body may hold {LARGEST_BODY} bytes at most"
-        else:
-            return None
-        return Response(status, "text/plain; charset=utf-8", f"{why}\n".encode())
-
-    def _request(self) -> Request:
-        parts = urlsplit(self.path)
-        asked = parse_qs(parts.query, keep_blank_values=True)
-        length = int(self.headers.get("Content-Length") or 0)
-        return Request(
-            "GET" if self.command == "HEAD" else self.command,
-            unquote(parts.path),
-            {name: tuple(values) for name, values in asked.items()},
-            {name.lower(): value for name, value in self.headers.items()},
-            self.rfile.read(length) if length else b"",
-        )
-
-    def log_message(self, format: str, *args: object) -> None:
-        """Write nothing; errors are answered."""

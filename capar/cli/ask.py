@@ -202,7 +202,8 @@ def serve(
     where = place(actionary)
     with Actionary.open(where, read_only=True) as opened:
         count = len(opened.observations())
-    with ActionaryServer(Service(where, token, time_limit), host=host, port=port) as server:
+    service = Service(where, token, seconds=time_limit)
+    with ActionaryServer(service, host=host, port=port) as server:
         if not server.loopback:
             typer.echo(f"capar: {host} can be reached from other computers", err=True)
         typer.echo(f"{where} ({count} observations) is at {server.url}", err=True)

@@ -76,11 +76,15 @@ def short(iri: str) -> str:
     return iri
 
 
-def collect(result: QuerySolutions | QueryBoolean | QueryTriples) -> Answer:
-    """Everything that a query of the embedded store answers."""
+Result: TypeAlias = QuerySolutions | QueryBoolean | Iterable[Triple]
+"""What an engine answers, read as it comes."""
+
+
+def collect(result: Result) -> Answer:
+    """Everything that a query answers."""
     if isinstance(result, QueryBoolean):
         return Answer(boolean=bool(result))
-    if isinstance(result, QueryTriples):
+    if not isinstance(result, QuerySolutions):
         return Answer(triples=tuple(dict.fromkeys(result)))
     variables = tuple(each.value for each in result.variables)
     return Answer(variables, tuple(tuple(row) for row in result))
@@ -95,12 +99,11 @@ def encode(result: QuerySolutions | QueryBoolean | QueryTriples) -> tuple[str, b
     return QueryResultsFormat.JSON.media_type, data or b""
 
 
-def decode(media_type: str, data: bytes) -> Answer:
-    """The answer that such bytes state."""
+def decode(media_type: str, data: bytes) -> Result:
+    """What such bytes state."""
     if "json" in media_type:
-        return collect(parse_query_results(data, format=QueryResultsFormat.JSON))
-    parsed = (each.triple for each in parse(data, format=RdfFormat.N_TRIPLES))
-    return Answer(triples=tuple(dict.fromkeys(parsed)))
+        return parse_query_results(data, format=QueryResultsFormat.JSON)
+    return (each.triple for each in parse(data, format=RdfFormat.N_TRIPLES))
 
 
 def turtle(statements: Iterable[Triple] | Iterable[Quad], *, form: RdfFormat) -> str:

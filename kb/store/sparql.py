@@ -1,12 +1,12 @@
 """Preparing a user's query: refusing writes, declaring prefixes, expanding our functions."""
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
 from difflib import get_close_matches
 from functools import cache
 from importlib.resources import files
 from itertools import dropwhile, pairwise
+from typing import NamedTuple
 
 from kb.errors import QueryError
 from ontology import BASE, DATA, PREFIXES, terms
@@ -52,8 +52,11 @@ FUNCTIONS = {
 """Our functions, as expressions of plain SPARQL or of the engine's calls, with their arity."""
 
 
-@dataclass(frozen=True, slots=True)
-class Token:
+_CALLED = {text: each for each in FUNCTIONS for text in (f"capar:{each}", f"<{BASE}{each}>")}
+"""The names of our functions as queries write them."""
+
+
+class Token(NamedTuple):
     """A piece of a query and what it is."""
 
     kind: str
@@ -112,12 +115,14 @@ def prepare(query: str) -> str:
     Raises:
         QueryError: It is empty, writes, or calls other services.
     """
-    if all(each.kind == "space" for each in tokens(query)):
+    pieces = list(tokens(query))
+    if all(each.kind == "space" for each in pieces):
         raise QueryError("the query is empty; `capar query --list` names questions to begin with")
-    _refuse(query)
+    _refuse(pieces)
     if _ESCAPE.search(query):
-        _refuse(_ESCAPE.sub(lambda at: chr(int(at.group(1) or at.group(2), 16)), query))
-    return complete(query)
+        whole = _ESCAPE.sub(lambda at: chr(int(at.group(1) or at.group(2), 16)), query)
+        _refuse(tokens(whole))
+    return _completed(pieces)
 
 
 def complete(query: str) -> str:
@@ -126,7 +131,10 @@ def complete(query: str) -> str:
     Raises:
         QueryError: A function with another number of arguments than it takes.
     """
-    pieces = list(tokens(query))
+    return _completed(list(tokens(query)))
+
+
+def _completed(pieces: list[Token]) -> str:
     meaningful = [each for each in pieces if each.kind != "space"]
     declared = {
         after.text.partition(":")[0]
@@ -138,8 +146,8 @@ def complete(query: str) -> str:
     return "".join(f"PREFIX {each}: <{PREFIXES[each]}> " for each in missing) + _expand(pieces)
 
 
-def _refuse(query: str) -> None:
-    words = [each.text.lower() for each in tokens(query) if each.kind == "word"]
+def _refuse(pieces: Iterable[Token]) -> None:
+    words = [each.text.lower() for each in pieces if each.kind == "word"]
     if "service" in words:
         raise QueryError("a query may not use SERVICE: it answers from this Actionary alone")
     for word in words:
@@ -158,22 +166,18 @@ def opens_tracks(query: str) -> bool:
         return False
     pieces = [each for each in tokens(query) if each.kind != "space"]
     return any(
-        after.text == "(" and _function(before) in ARITIES for before, after in pairwise(pieces)
+        after.text == "(" and _CALLED.get(before.text) in ARITIES
+        for before, after in pairwise(pieces)
     )
-
-
-def _function(piece: Token) -> str | None:
-    names = (each for each in FUNCTIONS if piece.text in {f"capar:{each}", f"<{BASE}{each}>"})
-    return next(names, None)
 
 
 def _expand(pieces: list[Token]) -> str:
     out: list[str] = []
     at = 0
     while at < len(pieces):
-        name = _function(pieces[at])
+        name = _CALLED.get(pieces[at].text)
         opening = at + 1
-        while opening < len(pieces) and pieces[opening].kind == "space":
+        while name and opening < len(pieces) and pieces[opening].kind == "space":
             opening += 1
         if name and opening < len(pieces) and pieces[opening].text == "(":
             arguments, at = _arguments(pieces, opening)

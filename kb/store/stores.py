@@ -15,7 +15,7 @@ import sys
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, BinaryIO, TypeAlias, TypeVar
@@ -26,7 +26,7 @@ from pyoxigraph import Store as Oxigraph
 from capar.model.errors import UnknownNameError
 from kb.errors import DamagedError, LockedError, QueryError, StoreError, TimeLimitError
 from kb.store import answer_values, sparql
-from kb.store.answer_values import Answer
+from kb.store.answer_values import Answer, Result
 from kb.store.statements import insertion
 from ontology import DATA
 
@@ -99,6 +99,7 @@ class EmbeddedStore:
         self._folder = folder
         self._read_only = read_only
         self._lock: int | None = None
+        self._seen: dict[Path, tuple[int, int]] = {}
         if folder is not None and not read_only:
             self._lock = _locked(folder, wait_s)
         try:
@@ -117,6 +118,8 @@ class EmbeddedStore:
                     f"{self._folder}: no Actionary there; `capar observe` makes one, and "
                     f"--actionary or {VARIABLE} says where it is"
                 )
+            changing = [data, *data.glob("MANIFEST-*"), *data.glob("*.log")]
+            self._seen = _times_and_sizes(changing)
             return _reading(data, lambda store: store)
         # Without its table of contents the database would start empty, and overwrite what is there.
         if any(data.glob("*.sst")) and not (data / "CURRENT").is_file():
@@ -171,6 +174,15 @@ class EmbeddedStore:
             )
             return found
 
+    def answered(self, query: str, reading: Callable[[Result], _T]) -> _T:
+        """What is read of the answer to a user's query, asked in this process.
+
+        Raises:
+            QueryError: It is no query.
+        """
+        with _explained():
+            return self._read(lambda store: _result(store, query, reading))
+
     def ask_within(self, query: str, *, seconds: float) -> Answer:
         """The answer to a user's query, asked in a process of its own."""
         if self._folder is None:
@@ -197,10 +209,12 @@ class EmbeddedStore:
 
         return Dataset(store=OxigraphStore(store=self._store), default_union=True)
 
-    def refresh(self) -> None:
-        """See what the writer has written since."""
-        if self._read_only:
-            self._store = self._open()
+    def refresh(self) -> bool:
+        """See what the writer has written since; whether there is anything new."""
+        if not self._read_only or self._seen == _times_and_sizes(self._seen):
+            return False
+        self._store = self._open()
+        return True
 
     def close(self) -> None:
         """Close the database and release the lock."""
@@ -255,6 +269,19 @@ def _locked(folder: Path, wait_s: float) -> int:
     text = json.dumps({"pid": os.getpid(), "host": socket.gethostname(), "since": since})
     os.pwrite(file, text.encode(), 0)
     return file
+
+
+def _times_and_sizes(paths: Iterable[Path]) -> dict[Path, tuple[int, int]]:
+    """When each was changed and how large it is; nothing of what is gone.
+
+    A change of the database makes a new file of it, or one of these longer.
+    """
+    found = {}
+    for path in paths:
+        with suppress(OSError):
+            seen = path.stat()
+            found[path] = seen.st_mtime_ns, seen.st_size
+    return found
 
 
 def _reading(data: Path, reading: Callable[[Oxigraph], _T]) -> _T:
@@ -338,7 +365,12 @@ class RemoteStore:
 
     def ask(self, query: str) -> Answer:
         """What a query of ours answers, over the union of all graphs."""
-        return answer_values.decode(*self.encoded(query))
+        return answer_values.collect(answer_values.decode(*self.encoded(query)))
+
+    def answered(self, query: str, reading: Callable[[Result], _T]) -> _T:
+        """What is read of the answer to a query."""
+        with _explained():
+            return reading(answer_values.decode(*self.encoded(query)))
 
     def encoded(self, query: str) -> tuple[str, bytes]:
         """The media type and the bytes of an answer.
@@ -357,7 +389,7 @@ class RemoteStore:
         if not sparql.names_graphs(query):
             return _post(f"{asked}?union-default-graph=true", query, kind)
         nowhere = f"ASK FROM <{DATA}graph/none> {{ ?s ?p ?o }}"
-        if answer_values.decode(*_post(asked, nowhere, kind)).boolean:
+        if answer_values.decode(*_post(asked, nowhere, kind)):
             raise StoreError(
                 f"{self.place}: this server ignores FROM; write GRAPH <...> {{ ... }} in its "
                 "place, or start the server without --union-default-graph"
@@ -392,8 +424,9 @@ class RemoteStore:
         store = SPARQLStore(f"{self.place}/query", params=union)
         return Dataset(store=store, default_union=True)
 
-    def refresh(self) -> None:
+    def refresh(self) -> bool:
         """A server always shows what was written."""
+        return False
 
     def close(self) -> None:
         """There is nothing to release."""
@@ -440,11 +473,7 @@ def _asked_within(
     query: str, seconds: float, *, folder: str = "", dump: bytes = b"", address: str = ""
 ) -> Answer:
     """What a query answers over a folder, a dump of N-Quads or a server, within a time [s]."""
-    if not 0.0 < seconds < math.inf:
-        raise QueryError(
-            f"{seconds:g} s is no time limit; give a positive number of seconds "
-            "(--time-limit SECONDS)"
-        )
+    check_time_limit(seconds)
     request = json.dumps({"query": query, "folder": folder, "address": address}).encode()
     try:
         done = subprocess.run(
@@ -463,7 +492,20 @@ def _asked_within(
     kind, _, rest = head.decode().partition(" ")
     if kind in {"query-error", "store-error"}:
         raise (QueryError if kind == "query-error" else StoreError)(json.loads(rest))
-    return answer_values.decode(rest, body)
+    return answer_values.collect(answer_values.decode(rest, body))
+
+
+def check_time_limit(seconds: float) -> None:
+    """Check that a time limit [s] is one.
+
+    Raises:
+        QueryError: It is not.
+    """
+    if not 0.0 < seconds < math.inf:
+        raise QueryError(
+            f"{seconds:g} s is no time limit; give a positive number of seconds "
+            "(--time-limit SECONDS)"
+        )
 
 
 def answer_request(source: BinaryIO) -> bytes:
@@ -474,11 +516,12 @@ def answer_request(source: BinaryIO) -> bytes:
         if request["address"]:
             kind, data = RemoteStore(request["address"]).encoded(query)
         elif request["folder"]:
-            kind, data = _reading(Path(request["folder"]), lambda store: _encoded(store, query))
+            folder = Path(request["folder"])
+            kind, data = _reading(folder, lambda store: _result(store, query, answer_values.encode))
         else:
             store = Oxigraph()
             store.bulk_load(input=source.read(), format=RdfFormat.N_QUADS)
-            kind, data = _encoded(store, query)
+            kind, data = _result(store, query, answer_values.encode)
     except (QueryError, SyntaxError) as error:
         return b"query-error " + json.dumps(user_message(str(error))).encode()
     except (StoreError, OSError) as error:
@@ -486,9 +529,18 @@ def answer_request(source: BinaryIO) -> bytes:
     return f"answer {kind}\n".encode() + data
 
 
-def _encoded(store: Oxigraph, query: str) -> tuple[str, bytes]:
+@contextmanager
+def _explained() -> Iterator[None]:
+    """Report a mistake in a user's query as an error of ours."""
     try:
-        return answer_values.encode(evaluated(store, query))
+        yield
+    except (QueryError, SyntaxError) as error:
+        raise QueryError(user_message(str(error))) from None
+
+
+def _result(store: Oxigraph, query: str, reading: Callable[[Any], _T]) -> _T:
+    try:
+        return reading(evaluated(store, query))
     except RuntimeError as error:
         if _NO_FUNCTION.search(str(error)):
             raise QueryError(str(error)) from None

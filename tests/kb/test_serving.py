@@ -1,23 +1,36 @@
 """An Actionary is asked over HTTP, and written by those alone who bear the token."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
 import threading
+import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
+from urllib.parse import urlencode
 
 import pytest
 from observations import drink_from_mug, with_unknown
 from pyoxigraph import QueryResultsFormat, RdfFormat, parse, parse_query_results
+from starlette.requests import Request
+from starlette.responses import Response
 
 from kb.actionary import Actionary
+from kb.errors import QueryError
 from kb.exchange import FORMATS, export, read
 from kb.queries.questions import questions
-from kb.serving import ActionaryServer, Request, Response, Service
+from kb.serving import ActionaryServer, Service
 
 TOKEN = "a secret"
 NAMES = "SELECT ?name { ?o a capar:Observation ; rdfs:label ?name }"
+ENDLESS = "SELECT (COUNT(*) AS ?n) { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i . ?j ?k ?l }"
 
 
 @pytest.fixture(scope="module")
@@ -30,22 +43,47 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.fixture(scope="module")
 def served(place: str) -> Iterator[str]:
-    with ActionaryServer(Service(place), port=0) as server:
+    with serving(Service(place)) as address:
+        yield address
+
+
+@contextmanager
+def serving(service: Service) -> Iterator[str]:
+    with ActionaryServer(service, port=0) as server:
         thread = threading.Thread(target=server.serve_forever)
         thread.start()
         yield server.url
-        server.shutdown()
+        server.should_exit = True
         thread.join()
 
 
+def asked(method: str, path: str, given: dict[str, str] | None = None, **headers: str) -> Request:
+    named = {name.replace("_", "-"): value for name, value in headers.items()}
+    scope = {"type": "http", "method": method, "path": path}
+    scope["query_string"] = urlencode(given or {}).encode()
+    scope["headers"] = [(name.encode(), value.encode()) for name, value in named.items()]
+    return Request(scope)
+
+
 def get(service: Service, path: str, *, accept: str = "", **given: str) -> Response:
-    asked = {name: (value,) for name, value in given.items()}
-    return service.answer(Request("GET", path, asked, {"accept": accept}))
+    return service.answer(asked("GET", path, given, accept=accept))
 
 
 def post(service: Service, path: str, body: bytes, kind: str, *, token: str = "") -> Response:
-    headers = {"content-type": kind, "authorization": f"Bearer {token}"}
-    return service.answer(Request("POST", path, {}, headers, body))
+    request = asked("POST", path, content_type=kind, authorization=f"Bearer {token}")
+    return service.answer(request, body)
+
+
+def status(url: str, query: str = "", data: bytes | None = None, **headers: str) -> int:
+    """The status of a response; one of 503 says when to ask again."""
+    named = {name.replace("_", "-"): value for name, value in headers.items()}
+    full = f"{url}query?{urlencode({'query': query})}" if query else url
+    try:
+        with urllib.request.urlopen(urllib.request.Request(full, data, named)) as reply:
+            return reply.status
+    except urllib.error.HTTPError as error:
+        assert error.code != 503 or int(error.headers["Retry-After"]) > 0
+        return error.code
 
 
 @pytest.mark.parametrize(
@@ -57,10 +95,10 @@ def post(service: Service, path: str, body: bytes, kind: str, *, token: str = ""
     ],
 )
 def test_a_query_is_asked_in_the_three_ways_of_the_protocol(place, method, kind, body) -> None:
-    given = {"query": (NAMES,)} if method == "GET" else {}
-    request = Request(method, "/query", given, {"content-type": kind}, body)
-    response = Service(place).answer(request)
-    assert (response.status, response.media_type) == (200, "application/sparql-results+json")
+    given = {"query": NAMES} if method == "GET" else {}
+    response = Service(place).answer(asked(method, "/query", given, content_type=kind), body)
+    assert response.status_code == 200
+    assert response.headers["content-type"] == "application/sparql-results+json"
     (row,) = json.loads(response.body)["results"]["bindings"]
     assert row["name"]["value"] == "DrinkFromMug"
 
@@ -87,37 +125,124 @@ def test_statements_come_in_the_form_that_is_accepted(place) -> None:
             ("text/turtle", RdfFormat.TURTLE),
             ("application/rdf+xml", RdfFormat.RDF_XML),
         )
-        if (response := get(Service(place), "/query", accept=kind, query=query)).status == 200
+        if (response := get(Service(place), "/query", accept=kind, query=query)).status_code == 200
     }
     assert len(found) == 1
-    assert get(Service(place), "/query", accept="image/png", query=query).status == 406
+    assert get(Service(place), "/query", accept="image/png", query=query).status_code == 406
 
 
 @pytest.mark.parametrize(
     ("request_", "status", "told"),
     [
-        (Request("GET", "/nowhere"), 404, "/questions"),
-        (Request("GET", "/questions/segmets"), 404, "Did you mean 'segments'?"),
-        (Request("GET", "/questions/world"), 400, "must be given"),
-        (Request("GET", "/questions/segments", {"ee": ("tail",)}), 404, "right_hand"),
-        (Request("GET", "/observations/Nothing"), 404, "DrinkFromMug"),
-        (Request("GET", "/query"), 400, "one query"),
-        (Request("GET", "/query", {"query": ("SELECT nonsense",)}), 400, "error"),
-        (Request("GET", "/query", {"query": ("DELETE WHERE { ?s ?p ?o }",)}), 400, "error"),
-        (Request("POST", "/query", {}, {"content-type": "text/plain"}, b"x"), 415, "sparql-query"),
-        (Request("POST", "/questions"), 405, "GET"),
-        (Request("GET", "/query", {"default-graph-uri": ("x",)}), 400, "FROM"),
+        (asked("GET", "/nowhere"), 404, "/questions"),
+        (asked("GET", "/questions/segmets"), 404, "Did you mean 'segments'?"),
+        (asked("GET", "/questions/world"), 400, "must be given"),
+        (asked("GET", "/questions/segments", {"ee": "tail"}), 404, "right_hand"),
+        (asked("GET", "/observations/Nothing"), 404, "DrinkFromMug"),
+        (asked("GET", "/query"), 400, "one query"),
+        (asked("GET", "/query", {"query": "SELECT nonsense"}), 400, "error"),
+        (asked("GET", "/query", {"query": "DELETE WHERE { ?s ?p ?o }"}), 400, "error"),
+        (asked("POST", "/query", content_type="text/plain"), 415, "sparql-query"),
+        (asked("POST", "/questions"), 405, "GET"),
+        (asked("GET", "/query", {"default-graph-uri": "x"}), 400, "FROM"),
     ],
 )
 def test_a_mistake_is_answered_with_a_status_and_a_remedy(place, request_, status, told) -> None:
     response = Service(place).answer(request_)
-    assert response.status == status
+    assert response.status_code == status
     assert told in response.body.decode()
 
 
-def test_a_query_ends_with_its_time_limit(place) -> None:
-    query = "SELECT (COUNT(*) AS ?n) { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i }"
-    assert get(Service(place, seconds=0.6), "/query", query=query).status == 503
+def test_a_query_ends_with_its_time_limit_and_the_server_goes_on(place) -> None:
+    with serving(Service(place, seconds=0.6)) as url:
+        assert status(url, ENDLESS) == 503
+        assert status(url, NAMES) == 200
+
+
+def test_a_time_limit_is_a_number_of_seconds(place) -> None:
+    with pytest.raises(QueryError, match="no time limit"):
+        Service(place, seconds=float("inf"))
+
+
+def test_look_ups_are_answered_beside_endless_queries(place) -> None:
+    with serving(Service(place, seconds=20.0)) as url, ThreadPoolExecutor(32) as clients:
+        endless = [clients.submit(status, url, f"{ENDLESS} # {n}") for n in range(8)]
+        found = [clients.submit(status, url, f"{NAMES} # {n}") for n in range(24)]
+        assert {each.result() for each in found} == {200}
+        assert not any(each.done() for each in endless)
+
+
+def test_only_the_query_whose_process_is_killed_is_not_answered(place) -> None:
+    with serving(Service(place)) as url, ThreadPoolExecutor(2) as clients:
+        endless = clients.submit(status, url, ENDLESS)
+        while not (busy := [pid for pid in descendants(os.getpid()) if spent_ticks(pid) > 100]):
+            assert status(url, NAMES) == 200
+        for pid in busy:
+            os.kill(pid, signal.SIGKILL)
+        assert endless.result() == 503
+        assert status(url, NAMES) == 200
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_nothing_is_left_of_a_server_however_it_ends(place, how) -> None:
+    command = "from capar.cli import main; main()"
+    served = [sys.executable, "-c", command, "serve", "--port", "0", "--actionary", place]
+    with subprocess.Popen(served, stderr=subprocess.PIPE, text=True) as running:
+        assert running.stderr is not None
+        url = running.stderr.readline().rpartition(" ")[2].strip()
+        with ThreadPoolExecutor(1) as client:
+            client.submit(status, url, ENDLESS)
+            assert status(url, NAMES) == 200
+            others = descendants(running.pid)
+            running.send_signal(how)
+            running.wait()
+    assert others
+    deadline = time.monotonic() + 30.0
+    while left := [pid for pid in others if Path(f"/proc/{pid}").exists()]:
+        assert time.monotonic() < deadline, left
+
+
+def descendants(root: int) -> list[int]:
+    """The processes that a process and those have started."""
+    found = [root]
+    for pid in found:
+        for children in Path(f"/proc/{pid}/task").glob("*/children"):
+            found += map(int, children.read_text().split())
+    return found[1:]
+
+
+def spent_ticks(pid: int) -> int:
+    """The processor time of a process."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0
+    return int(fields[11]) + int(fields[12])
+
+
+def test_what_others_write_is_seen_at_once(tmp_path) -> None:
+    with Actionary.open(tmp_path / "actionary") as writer:
+        writer.add(drink_from_mug())
+        with serving(Service(writer.store.place)) as url:
+            for count in range(1, 5):
+                with urllib.request.urlopen(f"{url}observations") as reply:
+                    assert len(json.load(reply)) == count
+                writer.add(replace(drink_from_mug(), capture=f"again_{count}"))
+
+
+def test_who_writes_at_once_writes_one_after_the_other(tmp_path) -> None:
+    place = str(tmp_path / "actionary")
+    Actionary.open(place).close()
+    source = Actionary.in_memory()
+    source.add(drink_from_mug())
+    text = export(source.store, "nquads", observation="DrinkFromMug")
+    bodies = [text.replace(b"DrinkFromMug", f"Drink{n}".encode()) for n in range(4)]
+    headers = {"Content_Type": "application/n-quads", "Authorization": f"Bearer {TOKEN}"}
+    with serving(Service(place, TOKEN)) as url, ThreadPoolExecutor(4) as clients:
+        written = [clients.submit(status, f"{url}statements", "", b, **headers) for b in bodies]
+        assert {each.result() for each in written} == {200}
+    with Actionary.open(place, read_only=True) as actionary:
+        assert len(actionary.observations()) == 4
 
 
 def test_named_questions_answer_as_the_actionary_does(place) -> None:
@@ -152,10 +277,10 @@ def test_writing_needs_the_token_and_right_statements(tmp_path) -> None:
         (wrong, TOKEN, 400),
         (b"nonsense", TOKEN, 400),
     ):
-        assert post(service, "/statements", body, kind, token=token).status == status
+        assert post(service, "/statements", body, kind, token=token).status_code == status
         assert json.loads(get(service, "/observations").body) == []
-    assert post(Service(service.place), "/statements", text, kind, token=TOKEN).status == 403
-    assert post(service, "/statements", text, kind, token=TOKEN).status == 200
+    assert post(Service(service.place), "/statements", text, kind, token=TOKEN).status_code == 403
+    assert post(service, "/statements", text, kind, token=TOKEN).status_code == 200
     assert [each["name"] for each in json.loads(get(service, "/observations").body)] == [name]
     kept = get(service, f"/observations/{name}", accept=kind)
     assert set(read(kept.body, "nquads")) == set(read(text, "nquads"))
