@@ -23,6 +23,7 @@ SMALLEST = {
     "reasoning": "--minutes 0.2 --runs 1",
     "recorded_bodies": "",
     "regeneration": "touch --scenes 1",
+    "serving": "--requests 20 --clients 2 --seconds 1 --triples 1000",
     "spoken_requests": "--first 1",
     "starting": "--runs 0",
     "words": "--verbs 2 --verbnet nowhere",
