@@ -115,13 +115,17 @@ def _renamed(quad: Quad, name: str, other: str) -> Quad:
     )
 
 
-def asked(actionary: Actionary, line: str, given: dict[str, str], scope: dict[str, str]) -> None:
-    """Ask a question a few times and print the median [ms] and the number of rows."""
+def read(line: str, given: dict[str, str], scope: dict[str, str]) -> tuple[str, dict[str, str]]:
+    """The name of a question and its parameters."""
     question, _, stated = line.partition(" ")
     name, _, wanted = question.partition(":")
     parameters = {key: given[key] for key in wanted.split(",") if key}
     parameters |= dict(pair.split("=") for pair in stated.split())
-    parameters |= {} if name in {"abilities", "notices"} else scope
+    return name, parameters | ({} if name in {"abilities", "notices"} else scope)
+
+
+def asked(actionary: Actionary, name: str, parameters: dict[str, str]) -> None:
+    """Ask a question a few times and print the median [ms] and the number of rows."""
     times: list[float] = []
     rows = 0
     while len(times) < REPEATS and sum(times) < LONGEST_S:
@@ -174,12 +178,15 @@ def asked_all(folder: Path, options: argparse.Namespace) -> None:
         print(f"{len(every)} observations of {recorded_s:.0f} s")
         print("of one capture")
         for line in OF_CAPTURE[: options.first]:
-            asked(actionary, line, given, {"capture": capture})
+            asked(actionary, *read(line, given, {"capture": capture}))
         print("over all")
         for line in OVER_ALL[: options.first]:
-            asked(actionary, line, given, {})
+            asked(actionary, *read(line, given, {}))
     print("commands")
-    command("query", "segments", f"capture={capture}", "--actionary", str(folder))
+    for line in OF_CAPTURE[: options.first]:
+        name, parameters = read(line, given, {"capture": capture})
+        stated = (f"{key}={value}" for key, value in parameters.items())
+        command("query", name, *stated, "--actionary", str(folder))
     taken_ms = command("check", "--actionary", str(folder))
     print(f"{taken_ms / recorded_s:10.1f} ms               of check for each second of recording")
 

@@ -1,16 +1,19 @@
 """Processor and wall time of commands from a cold start.
 
 ``python benchmarks/starting.py [--runs 10] [--json]``: each command is a process of its own; a
-first round, which may write bytecode, is left out, except with ``--runs 0``. Commands take turns,
-so that a machine whose speed changes treats them alike. Beside them ten million additions in a loop
+first round, which writes bytecode, as an installation does, is left out, except with ``--runs 0``.
+Once more the capture is observed with an empty folder of caches each time. Commands take turns, so
+that a machine whose speed changes treats them alike. Beside them ten million additions in a loop
 of Python, and what the median would be on the reference machine, where those take 0.7 s.
 """
 
 import argparse
 import json
+import os
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 from importlib import resources
 from statistics import median
@@ -21,22 +24,28 @@ DEMO = str(resources.files("capar") / "demo" / "drink_from_mug")
 MAIN = "from capar.cli import main; main()"
 COMMANDS = {
     "capar observe, 4 s capture": [sys.executable, "-c", MAIN, "observe", DEMO],
+    "the same, nothing cached": [sys.executable, "-c", MAIN, "observe", DEMO],
     "capar --help": [sys.executable, "-c", MAIN, "--help"],
     "import capar": [sys.executable, "-c", "import capar"],
-    "import numpy, scipy.spatial, trimesh": [
+    "import numpy, scipy.spatial, .ndimage": [
         sys.executable,
         "-c",
-        "import numpy, scipy.spatial.transform, trimesh",
+        "import numpy, scipy.spatial, scipy.ndimage",
     ],
     "ten million additions": [sys.executable, "-c", scene.ADDITIONS],
 }
 
 
-def spent(command: list[str]) -> tuple[float, float]:
-    """Processor time and wall time of one run [s]."""
+def spent(command: list[str], bytecode: str, cache: str) -> tuple[float, float]:
+    """Processor time and wall time of one run [s], with folders of bytecode and of caches."""
+    given = {
+        "PYTHONPYCACHEPREFIX": bytecode,
+        "PYTHONDONTWRITEBYTECODE": "",
+        "XDG_CACHE_HOME": cache,
+    }
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     start = time.perf_counter()
-    subprocess.run(command, capture_output=True, check=True)
+    subprocess.run(command, capture_output=True, check=True, env=os.environ | given)
     wall = time.perf_counter() - start
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, wall
@@ -48,9 +57,11 @@ def main() -> None:
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")
     asked = parser.parse_args()
     found: dict[str, list[tuple[float, float]]] = {name: [] for name in COMMANDS}
-    for _ in range(asked.runs + 1):
-        for name, command in COMMANDS.items():
-            found[name].append(spent(command))
+    with tempfile.TemporaryDirectory() as folder:
+        for number in range(asked.runs + 1):
+            for name, command in COMMANDS.items():
+                cache = f"cache_{number}" if "nothing cached" in name else "cache"
+                found[name].append(spent(command, f"{folder}/bytecode", f"{folder}/{cache}"))
     figures = {
         name: {
             "processor_s": [
