@@ -14,7 +14,7 @@ from capar.model.calibration import (
     Horizons,
     PairCalibration,
 )
-from capar.model.capture import Capture, Sensor, TagObject, TagType
+from capar.model.capture import Capture, Role, Sensor, TagObject, TagType
 from capar.model.errors import CaparError, CaptureError, UnknownNameError
 from extractors.bodies.bodies import Bodies, BodyGeometry, bodies_of
 from extractors.contact.contacts import FOOT, contact_tolerance, moving_grounds, pair_distances
@@ -112,6 +112,8 @@ def _body(
         first = first_rest(poses, at, thresholds)
     x, y, z = map(float, upright_axis(poses, first))
     speeds = speed(poses.smooth.positions, capture.times)
+    if isinstance(each, Sensor) and each.role is not Role.ACTS:
+        poses.forget()  # Filtered poses of what handles nothing take as much memory as its own.
     return BodyCalibration(
         name=each.name,
         noise_m=poses.noise.position_m,
