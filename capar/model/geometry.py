@@ -63,15 +63,39 @@ def transforms(
     return RigidTransform.from_components(positions, rotations(orientations))
 
 
+def composed(
+    positions: Float[np.ndarray, "frames 3"],
+    orientations: Float[np.ndarray, "frames 4"],
+    offset: "RigidTransform",
+) -> tuple[Float[np.ndarray, "frames 3"], Float[np.ndarray, "frames 4"]]:
+    """``T_world_body * T_body_offset``: its positions [m] and its unit quaternions w x y z.
+
+    ``transforms(...) * offset`` gives the same to the last bit; most of its time it looks for
+    matrices that are no rotations.
+    """
+    from scipy.spatial.transform import Rotation
+
+    def through_matrix(rotation: "Rotation") -> "Rotation":
+        return Rotation.from_matrix(rotation.as_matrix(), assume_valid=True)
+
+    poses = np.zeros((len(positions), 4, 4))
+    poses[:, :3, :3] = through_matrix(rotations(orientations)).as_matrix()
+    poses[:, :3, 3], poses[:, 3, 3] = positions, 1.0
+    poses = poses @ offset.as_matrix()
+    turned = Rotation.from_matrix(poses[:, :3, :3], assume_valid=True)
+    return poses[:, :3, 3], quaternions(through_matrix(turned))
+
+
 def continuous(orientations: Float[np.ndarray, "frames 4"]) -> Float[np.ndarray, "frames 4"]:
     """The same orientations with signs chosen so that neighbours are near; NaN frames stay."""
     out = np.array(orientations, dtype=float)
     known = np.flatnonzero(is_known(out))
     if known.size < 2:
         return out
-    dots = np.einsum("ij,ij->i", out[known[1:]], out[known[:-1]])
-    signs = np.cumprod(np.where(dots < 0.0, -1.0, 1.0))
-    out[known[1:]] *= signs[:, None]
+    turns = out if known.size == len(out) else out[known]
+    turned_over = np.einsum("ij,ij->i", turns[1:], turns[:-1]) < 0.0
+    if turned_over.any():
+        out[known[1:]] *= np.cumprod(np.where(turned_over, -1.0, 1.0))[:, None]
     return out
 
 

@@ -9,7 +9,7 @@ import fcl
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float, Int, Num
 
 from capar.model import geometry
 from capar.model.capture import Shape
@@ -231,11 +231,26 @@ def joined(vertices: Float[np.ndarray, "vertices 3"], faces: Int[np.ndarray, "fa
     """The same triangles with each corner once, in its order; corners of none are left out."""
     used = np.unique(faces)
     rounded = (vertices[used] * PER_METRE).round().astype(np.int64)
-    _, first, which = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
+    which, first = equal_rows(rounded)
     order = np.argsort(first)
     number = np.empty(len(vertices), np.int64)
-    number[used] = np.argsort(order)[which.reshape(-1)]
+    number[used] = np.argsort(order)[which]
     return vertices[used[first[order]]], number[faces]
+
+
+def equal_rows(
+    rows: Num[np.ndarray, "rows columns"],
+) -> tuple[Int[np.ndarray, "rows"], Int[np.ndarray, "different"]]:
+    """The number of each row, equal ones having one, and where each number stands first.
+
+    ``numpy.unique`` compares rows field by field, in six times the time.
+    """
+    order = np.lexsort(rows.T)
+    new = np.ones(len(rows), dtype=bool)
+    new[1:] = ~geometry.every(rows[order[1:]] == rows[order[:-1]])
+    which = np.empty(len(rows), np.int64)
+    which[order] = np.cumsum(new) - 1
+    return which, order[new]
 
 
 def _along(

@@ -1,5 +1,6 @@
 """Contact: exact surfaces, feet, what passes by, blows, normals, estimated distances."""
 
+from collections import Counter
 from dataclasses import replace
 from itertools import pairwise
 
@@ -30,9 +31,10 @@ from extractors.contact.proximity import (
     separation,
     sweep,
 )
-from extractors.contact.surfaces import meeting_points, surface
+from extractors.contact.surfaces import equal_rows, meeting_points, surface
 from extractors.measure import measure
 from extractors.motion.impacts import closing_speed, release_speed
+from extractors.readers.bundle.shapes import open_edges
 from extractors.relations.arrangement import lasting
 from extractors.signals.intervals import intervals
 from extractors.thresholds import Thresholds
@@ -209,6 +211,26 @@ def test_a_contact_that_noise_hides_at_the_recording_s_edge_lasts_up_to_it(
     found = bridged(one, other, edge=edge)
     extended = apart == 0 and hidden < edge
     assert (found == (other if extended else one)).all()
+
+
+@given(seed=st.integers(0, 9999), corners=st.integers(1, 12), faces=st.integers(1, 9))
+def test_edges_of_one_triangle_are_open_wherever_corners_are_repeated(
+    seed: int, corners: int, faces: int
+) -> None:
+    random = np.random.default_rng(seed)
+    vertices = random.integers(-1, 2, (corners, 3)) * random.choice([-1.0, 1.0], (corners, 1))
+    triangles = random.integers(0, corners, (faces, 3))
+    sides = Counter(
+        frozenset(map(tuple, (vertices[[a, b]] + 0.0).tolist()))
+        for each in triangles
+        if len({tuple(place) for place in (vertices[each] + 0.0).tolist()}) == 3
+        for a, b in zip(each, np.roll(each, -1), strict=True)
+    )
+    assert open_edges(vertices, triangles) == list(sides.values()).count(1)
+    which, first = equal_rows(vertices)
+    assert np.array_equal(vertices[first][which], vertices)
+    assert len(first) == len(np.unique(vertices, axis=0))
+    assert all(place == np.flatnonzero(which == which[place])[0] for place in first)
 
 
 @given(seed=st.integers(0, 9999), size_m=st.floats(0.02, 3.0))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
 from capar.model.capture import (
@@ -199,6 +199,20 @@ def test_lengths_and_known_rows_are_numpys_to_the_last_bit(
         assert np.array_equal(geometry.lengths(layout), expected, equal_nan=True)
         assert np.array_equal(geometry.is_known(layout), ~np.isnan(layout).any(axis=1))
         assert np.array_equal(geometry.every(layout > 0.0), (layout > 0.0).all(axis=1))
+
+
+@given(seed=seeds, count=st.integers(1, 40), still=st.booleans())
+def test_poses_are_composed_with_an_offset_as_scipy_does_to_the_last_bit(
+    seed: int, count: int, *, still: bool
+) -> None:
+    random = np.random.default_rng(seed)
+    places, there = random.normal(size=(count, 3)), turns(seed, count)
+    offset = geometry.transforms(random.normal(size=3), turns(seed + 1, 1)[0])
+    offset = RigidTransform.identity() if still else offset
+    poses = geometry.transforms(places, there) * offset
+    found = geometry.composed(places, there, offset)
+    assert np.array_equal(found[0], poses.translation)
+    assert np.array_equal(found[1], geometry.quaternions(poses.rotation))
 
 
 @given(seed=seeds, count=st.integers(1, 300))

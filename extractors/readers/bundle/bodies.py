@@ -269,9 +269,8 @@ def _offset_by(stream: Stream, offset: RigidTransform) -> Stream:
     positions = np.full_like(stream.positions, np.nan)
     orientations = np.full_like(stream.orientations, np.nan)
     if known.any():
-        poses = geometry.transforms(stream.positions[known], stream.orientations[known]) * offset
-        positions[known] = poses.translation
-        orientations[known] = geometry.quaternions(poses.rotation)
+        poses = geometry.composed(stream.positions[known], stream.orientations[known], offset)
+        positions[known], orientations[known] = poses
     return Stream(times=stream.times, positions=positions, orientations=orientations)
 
 

@@ -15,7 +15,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.model import geometry
 from capar.model.capture import Notice, Shape, ShapeSource, Source, TagObject, TagType, notice
 from capar.model.errors import FileError
-from extractors.contact.surfaces import joined
+from extractors.contact.surfaces import equal_rows, joined
 from extractors.readers.file_access import check_file, check_zip, neighbours, source_of
 from extractors.readers.recording import UNITS
 from extractors.readers.schema.capture import (
@@ -76,16 +76,14 @@ def read_mesh(path: Path) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarr
 
 def _plain_obj(data: bytes) -> "Mesh | None":
     """What an OBJ file holds that states corners and triangles alone; None of any other."""
-    rows: dict[bytes, list[list[bytes]]] = {b"v": [], b"f": []}
-    for line in data.splitlines():
-        kind, *words = line.split() or [b"#"]
-        if kind in rows and len(words) == 3:
-            rows[kind].append(words)
-        elif not kind.startswith(b"#"):
-            return None
+    rows = [row for row in map(bytes.split, data.splitlines()) if row and row[0][:1] != b"#"]
+    if not {(row[0], len(row)) for row in rows} <= {(b"v", 4), (b"f", 4)} or b"_" in data:
+        return None
+    corners, threes = ([row[1:] for row in rows if row[0] == kind] for kind in (b"v", b"f"))
     try:
-        vertices, faces = np.array(rows[b"v"], float), np.array(rows[b"f"], np.int64) - 1
-    except ValueError:
+        vertices = np.array([list(map(float, each)) for each in corners]).reshape(-1, 3)
+        faces = np.array([list(map(int, each)) for each in threes], np.int64).reshape(-1, 3) - 1
+    except (ValueError, OverflowError):
         return None
     if not faces.size or faces.min() < 0 or faces.max() >= len(vertices):
         return None
@@ -97,11 +95,12 @@ def open_edges(vertices: Float[np.ndarray, "vertices 3"], faces: Int[np.ndarray,
 
     Vertices at the same place count as one, as files with textures repeat them.
     """
-    _, which = np.unique(vertices, axis=0, return_inverse=True)
-    corners = which.reshape(-1)[faces]
-    corners = corners[(corners != np.roll(corners, 1, axis=1)).all(axis=1)]
-    edges = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2))
-    _, counts = np.unique(edges, axis=0, return_counts=True)
+    corners = equal_rows(vertices)[0][faces]
+    corners = corners[geometry.every(corners != corners[:, [2, 0, 1]])]
+    after = corners[:, [1, 2, 0]]
+    # An edge as one number, since rows of two are compared slowly.
+    edges = np.minimum(corners, after) * len(vertices) + np.maximum(corners, after)
+    _, counts = np.unique(edges, return_counts=True)
     return int((counts == 1).sum())
 
 
