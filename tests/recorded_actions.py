@@ -11,9 +11,9 @@ RATE_HZ = 30.0
 
 
 @cache
-def recorded(action: str, who: str = "man") -> Source:
-    """What a perfect tracker records of an action at 30 Hz."""
-    return observed_source(action_capture(action, who, rate_hz=RATE_HZ))
+def recorded(action: str, who: str = "man", *, noisy: bool = False) -> Source:
+    """What a perfect tracker, or a noisy one, records of an action at 30 Hz."""
+    return observed_source(action_capture(action, who, rate_hz=RATE_HZ, noisy=noisy))
 
 
 def good_trip(source: Source, agent: str, scene: Scene | None = None) -> Trip:

@@ -8,15 +8,24 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model.facts import Displaced
-from capar.model.geometry import rotations
+from capar.model.geometry import rotations, transforms
 from capar.model.locations import restored
 from capar.regeneration.body_frames import BodyFrames, head_path, head_ratio
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.forces import ForceKind, caught_pose
-from capar.regeneration.holds import CoHeld, Throw
+from capar.regeneration.holds import CoHeld, Hold, Throw, usual_pose
 from capar.regeneration.scenes import PlanError, Scene, moved
 from capar.regeneration.solving import Solver
-from capar.regeneration.sources import MOVES_M, Leaning, Meeting, Source, contact_points, moves
+from capar.regeneration.sources import (
+    MOVES_M,
+    STILL_M,
+    STILL_RAD,
+    Leaning,
+    Meeting,
+    Source,
+    contact_points,
+    moves,
+)
 
 HINGE, RAIL, PLANE = "hinge", "rail", "plane"
 
@@ -162,9 +171,6 @@ def _ratio(source: Source, scene: Scene, name: str) -> Float[np.ndarray, "3"]:
     return np.asarray(new / np.maximum(old, 1e-9))
 
 
-STILL_M, STILL_RAD = 0.005, float(np.radians(5.0))
-"""A interval in which an object stays so near where it was is one of rest [m, rad]."""
-
 TOUCH_M = 0.0005  # What is left between surfaces that touch [m].
 STEP_M = 0.005  # Steps in which the nearest place is sought where it touches [m].
 SEARCH_M = 0.03  # How far an object is moved at most so that it touches [m].
@@ -178,6 +184,8 @@ class Goal:
     frame: int
     pose: RigidTransform
     reason: str
+    on: RigidTransform | None = None
+    """Where it has to be from then on, at each frame, if that is known."""
 
 
 def object_goals(
@@ -215,12 +223,7 @@ def object_goals(
                 nearer = RigidTransform.from_translation(pose.translation - as_far.translation)
             start = (start[0], nearer * start[1]) if came else (first, pose)
             goals.append(Goal(name, first, pose, "caught there" if came else "stays where it is"))
-            met = (one for one in source.meetings if first <= one.first <= last)
-            for meeting in (one for one in met if one.thing == name):
-                at = _at_head(source, scene, old, new, meeting)
-                frames = dict.fromkeys((meeting.first, min(meeting.last, last)))
-                reason = f"at the {meeting.part}, in its own measures"
-                goals += [Goal(name, frame, at, reason) for frame in frames]
+            goals += _head_goals(source, scene, old, new, Hold("", name, first, last))
             if thrown:  # as far in metres from where the hand took it as it was
                 there = _displaced(path, (first, last), pose, turn)
                 down = Goal(name, last, there, "thrown there")
@@ -462,38 +465,62 @@ def support_at(scene: Scene, name: str, pose: RigidTransform) -> str:
     return moved(scene, name, (x, y, z), scene.thing(name).heading).support(name)
 
 
+def _head_goals(
+    source: Source, scene: Scene, old: BodyFrames, new: BodyFrames, held: Hold
+) -> Iterator[Goal]:
+    """Goals of a held object where it meets the head."""
+    for meeting in source.meetings:
+        if meeting.thing == held.thing and held.first <= meeting.first <= held.last:
+            at = _at_head(source, scene, old, new, meeting)[: held.last + 1 - meeting.first]
+            reason = f"at the {meeting.part}, in its own measures"
+            for frame in sorted({min(each, held.last) for each in meeting.instants}):
+                row = frame - meeting.first
+                yield Goal(held.thing, frame, at[row], reason, at[row:])
+
+
 def _at_head(
     source: Source, scene: Scene, old: BodyFrames, new: BodyFrames, meeting: Meeting
 ) -> RigidTransform:
-    """Where an object meets the new head: the same points touch, in the measures of both."""
-    frame = (meeting.first + meeting.last) // 2
-    eyes, thing = source.eyes[frame], source.paths[meeting.thing][frame]
+    """Where an object meets the new head, at each frame of the meeting.
+
+    The same points touch, in the measures of both. What is rigidly together with the head stays
+    where it is in the middle of the meeting.
+    """
+    span = slice(meeting.first, meeting.last + 1)
     part = source.capture.tag_object(meeting.part)
-    before, after = source.scene.thing(meeting.thing), scene.thing(meeting.thing)
-    seat = eyes.inv() * part.stream.pose(frame)
     if part.shape is None:
         raise PlanError(f"{meeting.part!r} has no shape; give it a mesh")
-    on_head, on_thing = contact_points(
-        part.shape, before.shape, part.stream.pose(frame).inv() * thing
-    )
-    spot = seat.apply(on_head)
-    relative = eyes.inv() * thing
-    gap = relative.apply(on_thing) - spot
-    scale = after.size / np.maximum(before.size, 1e-9)
-    middle = spot * head_ratio(old, new) + gap - relative.rotation.apply(on_thing * scale)
-    local = RigidTransform.from_components(middle, relative.rotation)
+    before, after = source.scene.thing(meeting.thing), scene.thing(meeting.thing)
+    relative = source.eyes[span].inv() * source.paths[meeting.thing][span]
+    heads = head_path(source, old, new)[span]
+    if meeting.steady:
+        relative = RigidTransform.concatenate([usual_pose(relative)])
+        heads = heads[[len(heads) // 2]]
+    known = np.flatnonzero(~part.stream.lost)
+    tracked = transforms(part.stream.positions[known], part.stream.orientations[known])
+    seat = usual_pose(source.eyes[known].inv() * tracked)
     around = Surroundings(new.human, scene)
     solver = Solver(new.human, (*scene.place, scene.floor_m), scene.heading)
     standing = solver.site("between_eyes")
+    scale = after.size / np.maximum(before.size, 1e-9)
+    out = []
+    for head, pose in zip(heads, relative, strict=True):
+        on_head, on_thing = contact_points(part.shape, before.shape, seat.inv() * pose)
+        spot = seat.apply(on_head)
+        gap = pose.apply(on_thing) - spot
+        place = spot * head_ratio(old, new) + gap - pose.rotation.apply(on_thing * scale)
+        local = RigidTransform.from_components(place, pose.rotation)
 
-    def apart(by_m: float) -> float:
-        pose = standing * RigidTransform.from_translation([by_m, 0.0, 0.0]) * local
-        around.pose(solver.posture, {meeting.thing: pose})
-        found = (p.distance_m for p in around.near(["head"]) if p.thing == meeting.thing)
-        return min(found, default=1.0)
+        def apart(by_m: float, local: RigidTransform = local) -> float:
+            moved = standing * RigidTransform.from_translation([by_m, 0.0, 0.0]) * local
+            around.pose(solver.posture, {meeting.thing: moved})
+            found = (p.distance_m for p in around.near(["head"]) if p.thing == meeting.thing)
+            return min(found, default=1.0)
 
-    ahead = RigidTransform.from_translation([touching_shift(apart), 0.0, 0.0])
-    return head_path(source, old, new)[frame] * ahead * local
+        ahead = RigidTransform.from_translation([touching_shift(apart), 0.0, 0.0])
+        out.append(head * ahead * local)
+    frames = meeting.last - meeting.first + 1
+    return RigidTransform.concatenate(out * frames if meeting.steady else out)
 
 
 def touching_shift(apart: Callable[[float], float], most_m: float = SEARCH_M) -> float:

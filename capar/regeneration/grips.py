@@ -15,7 +15,7 @@ from capar.model.capture import Shape
 from capar.regeneration.body_frames import BodyFrames
 from capar.regeneration.collisions import Surroundings
 from capar.regeneration.goals import TOUCH_M, touching_shift
-from capar.regeneration.holds import led_holds
+from capar.regeneration.holds import led_holds, usual_pose
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import Solver
 from capar.regeneration.sources import Hold, Source, contact_points, hand_surface
@@ -233,9 +233,7 @@ class Gripping:
 def recorded_grip(source: Source, hold: Hold) -> RigidTransform:
     """``T_thing_hand`` as it was recorded, in the median of the hold."""
     part = slice(hold.first, hold.last + 1)
-    poses = source.paths[hold.thing][part].inv() * source.hands[hold.side].path[part]
-    spot = np.median(poses.translation, axis=0)
-    return RigidTransform.from_components(spot, poses.rotation.mean())
+    return usual_pose(source.paths[hold.thing][part].inv() * source.hands[hold.side].path[part])
 
 
 def _seen_from(frame: RigidTransform, shape: Shape) -> Shape:

@@ -36,7 +36,8 @@ STEP_S, TOUCHES_S = 0.15, 0.2
 """A hand that touches an object at rest for the first of these before that moves, or after, is seen
 to touch it; it is held for the second then, so that this is seen again [s]."""
 
-INSTANTS = 5  # At so many instants an object that moves at the head meets it [1].
+STEADY_SHARE = 0.5  # Two that meet are rigidly together for this share of their contact [1].
+INSTANTS = 5  # At so many instants it is tried to reach an object that moves at the head [1].
 CARRIED_M = 0.02  # An object that is so far from both ends of a contact is being carried [m].
 
 
@@ -52,12 +53,20 @@ class Hold:
 
 @dataclass(frozen=True)
 class Meeting:
-    """A held object that is rigidly together with the performer's head, if only for an instant."""
+    """A held object that meets the performer's head."""
 
     thing: str
     part: str
     first: int
     last: int
+    steady: bool = True
+    """Whether they are rigidly together; else it moves at the head as long as it is there."""
+
+    @property
+    def instants(self) -> list[int]:
+        """Frames at which it is known where it meets the head, from when it comes."""
+        number = 2 if self.steady else INSTANTS
+        return sorted({*np.linspace(self.first, self.last, number).round().astype(int).tolist()})
 
 
 Hands = Mapping[str, tuple[str, RigidTransform]]
@@ -138,11 +147,7 @@ def meetings_of(
     paths: Mapping[str, RigidTransform],
     touching: list[Touching],
 ) -> tuple[Meeting, ...]:
-    """When objects are rigidly together with the head, in order of time.
-
-    What moves at the head as long as it is there, such as a mug that is tipped further, meets it
-    at some instants, from when it comes to when it leaves.
-    """
+    """When objects meet the head, in order of time."""
     own = {thing.name for thing in capture.objects if thing.tag is TagType.SELF}
     out = []
     for contact in touching:
@@ -150,19 +155,18 @@ def meetings_of(
             if thing in paths and part in own:
                 span = slice(contact.first, contact.last + 1)
                 found = settled(eyes[span].inv() * paths[thing][span])
-                if found:
-                    first, last = (contact.first + edge for edge in found)
-                    out.append(Meeting(thing, part, first, last))
+                whole = contact.last - contact.first
+                if found and found[1] - found[0] >= STEADY_SHARE * whole:
+                    met = contact.first + found[0], contact.first + found[1]
+                    out.append(Meeting(thing, part, *met))
                 else:
-                    instants = np.linspace(contact.first, contact.last, INSTANTS).round()
-                    frames = dict.fromkeys(int(frame) for frame in instants)
-                    out += [Meeting(thing, part, frame, frame) for frame in frames]
+                    out.append(Meeting(thing, part, contact.first, contact.last, steady=False))
     return tuple(sorted(out, key=lambda meeting: meeting.first))
 
 
 def settled(relative: RigidTransform) -> tuple[int, int] | None:
     """First and last of the frames in which a relative pose is near its median, if most are."""
-    off, turned = _apart(relative, relative)
+    off, turned = apart(relative, usual_pose(relative))
     for factor in LOOSER:
         steady = (off < factor * SETTLED_M) & (turned < factor * SETTLED_RAD)
         frames = np.flatnonzero(steady)
@@ -185,7 +189,7 @@ def _together(thing: RigidTransform, hand: RigidTransform) -> tuple[int, int] | 
         return rigid
     first, last = int(carried[0]), int(carried[-1])
     relative = thing.inv() * hand
-    off, turned = _apart(relative, relative[first : last + 1])
+    off, turned = apart(relative, usual_pose(relative[first : last + 1]))
     if not ((off < GRASP_M) & (turned < GRASP_RAD))[first : last + 1].all():
         return rigid
     near = (off < SLID * GRASP_M) & (turned < SLID * GRASP_RAD)
@@ -198,15 +202,19 @@ def _away(spots: Float[np.ndarray, "frames 3"]) -> Bool[np.ndarray, "frames"]:
     return np.asarray((gone > CARRIED_M) & (left > CARRIED_M))
 
 
-def _apart(
-    relative: RigidTransform, usual: RigidTransform
+def usual_pose(poses: RigidTransform) -> RigidTransform:
+    """The median of places, and the mean turn of those that are not farther from it than most."""
+    middle = np.median(poses.translation, axis=0)
+    off = np.linalg.norm(poses.translation - middle, axis=1)
+    return RigidTransform.from_components(middle, poses.rotation[off <= np.median(off)].mean())
+
+
+def apart(
+    poses: RigidTransform, usual: RigidTransform
 ) -> tuple[Float[np.ndarray, "frames"], Float[np.ndarray, "frames"]]:
-    """How far a relative pose is from the median of some frames [m, rad]."""
-    middle = np.median(usual.translation, axis=0)
-    near = np.linalg.norm(usual.translation - middle, axis=1)
-    turn = usual.rotation[near <= np.median(near)].mean()
-    off = np.linalg.norm(relative.translation - middle, axis=1)
-    return off, np.asarray((relative.rotation * turn.inv()).magnitude())
+    """How far poses are from a usual one [m, rad]."""
+    off = np.linalg.norm(poses.translation - usual.translation, axis=1)
+    return off, np.asarray((poses.rotation * usual.rotation.inv()).magnitude())
 
 
 NEAR_S = 0.25  # A hold may end so long before an object is seen to move on alone [s].

@@ -206,6 +206,9 @@ def object_paths(
                     f"{name!r} is lifted {1e3 * detour.lift_m:.0f} mm over what stands in its way "
                     f"at {source.times[start.frame]:.2f} s"
                 )
+        for goal in own:
+            if goal.on is not None:
+                poses[goal.frame : goal.frame + len(goal.on)] = list(goal.on)
         out[name] = with_throws(source, scene, name, RigidTransform.concatenate(poses))
     notes += [
         f"{load.thing!r} goes along with {load.bearer!r} from {source.times[load.first]:.2f} to "

@@ -171,8 +171,9 @@ def _event_gates(motion: Motion, hands: Mapping[str, RigidTransform]) -> Iterato
     eyes, _ = plan.human.sites(motion.postures, ["between_eyes"])["between_eyes"]
     for meeting in plan.source.meetings:
         middle = (meeting.first + meeting.last) // 2
-        for frame in (meeting.first, middle, meeting.last):
-            off_m = float(np.linalg.norm(eyes[frame] - plan.head.translation[middle]))
+        for frame in (*meeting.instants, middle):
+            there = plan.head.translation[middle if meeting.steady else frame]
+            off_m = float(np.linalg.norm(eyes[frame] - there))
             at.append((off_m, frame, f"{meeting.thing}, {meeting.part}"))
     yield within("event position", max(at), 1.0)
     yield within("event rotation", max(turned), 1.0, "deg")

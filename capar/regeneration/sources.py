@@ -1,11 +1,12 @@
 """The recorded performance: paths of hands, objects and eyes, and who held what."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import trimesh
 from jaxtyping import Float
+from scipy.signal import savgol_coeffs, savgol_filter
 from scipy.spatial import KDTree
 from scipy.spatial.transform import RigidTransform, Rotation
 
@@ -17,20 +18,22 @@ from capar.body.shapes import segment_surface
 from capar.body.skeleton import eyes_between
 from capar.body.virtual_scenes import Thing
 from capar.model.capture import Capture, Shape, Stream, TagObject, TagType
-from capar.model.facts import Displaced, Touching
-from capar.model.geometry import runs, transforms
+from capar.model.facts import Displaced, Resting, Touching
+from capar.model.geometry import quaternions, runs, transforms
 from capar.model.observation import Observation
 from capar.regeneration.holds import (
     CoHeld,
     Load,
     Release,
     Throw,
+    apart,
     co_held_of,
     holds_of,
     leanings_of,
     loads_of,
     meetings_of,
     releases_of,
+    usual_pose,
     with_blows,
     with_touches,
 )
@@ -38,6 +41,7 @@ from capar.regeneration.holds import Hold as Hold
 from capar.regeneration.holds import Leaning as Leaning
 from capar.regeneration.holds import Meeting as Meeting
 from capar.regeneration.scenes import PlanError, Scene
+from extractors.signals.intervals import time_step
 
 SAMPLES = 5000  # Points on each surface.
 
@@ -139,6 +143,14 @@ LAUNCH_FRAMES = 3
 FACED_M = 0.02
 """Points of a surface that are further from a hand's middle than the nearest by no more than this
 are faced by its palm [m]."""
+
+STILL_M, STILL_RAD = 0.005, float(np.radians(5.0))
+"""An interval in which a body stays so near where it was is one of rest [m, rad]."""
+
+LONGEST_S, WIDER, SURE = 0.25, 1.5, 2.0
+"""A motion is a parabola for up to so long before and after a frame, windows that are tried are so
+many times as long each as the one before, and estimates differ by no more than so many deviations
+[s, 1, 1]."""
 
 MOVES_M, MOVES_RAD = 0.02, float(np.radians(10.0))
 """An object that never goes or turns further does not move [m, rad]."""
@@ -249,9 +261,15 @@ def source_of(
             is refused when checked.
     """
     human = Human.of(measures_of(capture.agent))
+    noise, rests = _noise(observation), _rests(capture, observation)
+    tracks = {
+        name: _path(body.stream, cutoff_hz, rests.get(name, ()), noise[name])
+        if name in noise
+        else _path(body.stream, cutoff_hz)
+        for name, body in capture.bodies.items()
+    }
     eyes = _eyes(capture, cutoff_hz)
     place, heading = stance or _stance(human, eyes)
-    tracks = {name: _path(body.stream, cutoff_hz) for name, body in capture.bodies.items()}
     things, paths = {}, {}
     for each in capture.objects:
         if each.tag is not TagType.SELF:
@@ -298,9 +316,10 @@ def source_of(
         fastened={one.object: one.base for one in observation.guides if one.object in things},
         together={pair.hold.thing: pair.lead.thing for pair in co_held},
     )  # fmt: skip
+    meetings = meetings_of(capture, eyes, paths, touching)
+    eyes = _eyes(capture, cutoff_hz, [(m.first, m.last) for m in meetings if m.steady])
     made = Source(
-        capture, observation, human, scene, hands, paths, eyes, holds,
-        meetings_of(capture, eyes, paths, touching),
+        capture, observation, human, scene, hands, paths, eyes, holds, meetings,
         leanings_of(observation, {side: name for name, side in sides.items()}, things, holds),
         tuple(told), releases, throws,
         loads=loads_of(paths, holds, touching), co_held=co_held,
@@ -329,17 +348,106 @@ def moves(path: RigidTransform) -> bool:
     return bool(gone.max() >= MOVES_M or turned.max() >= MOVES_RAD)
 
 
-def _path(stream: Stream, cutoff_hz: float | None = CUTOFF_HZ) -> RigidTransform:
-    """A stream without noise, its losses filled from both sides."""
-    one = target(stream, cutoff_hz=cutoff_hz)
-    frames = np.arange(len(stream.times))
-    known = np.flatnonzero(~np.isnan(one.positions[:, 0]))
-    spots = np.stack([np.interp(frames, known, c[known]) for c in one.positions.T], axis=1)
-    turns = np.stack([np.interp(frames, known, c[known]) for c in one.orientations.T], axis=1)
+def _noise(observation: Observation) -> dict[str, tuple[float, float]]:
+    """Deviations of a coordinate and of the turn about an axis of noisy bodies [m, rad]."""
+    known = observation.calibration
+    if known is None:
+        return {}
+    return {
+        each.name: (each.noise_m, each.noise_rad)
+        for each in (*known.objects, *known.sensors)
+        if each.noise_m > known.thresholds["smoothing_noise_m"]
+    }
+
+
+def _rests(capture: Capture, observation: Observation) -> dict[str, list[tuple[int, int]]]:
+    """From when to when bodies rest, by name: objects while they are not displaced."""
+    out: dict[str, list[tuple[int, int]]] = {}
+    for fact in observation.facts:
+        if isinstance(fact, Resting):
+            out.setdefault(fact.ee, []).append((fact.first, fact.last))
+    for each in capture.objects:
+        rests = np.ones(len(capture.times), dtype=bool)
+        for fact in observation.facts:
+            if isinstance(fact, Displaced) and fact.object == each.name:
+                rests[fact.first + 1 : fact.last] = False
+        out[each.name] = runs(rests)
+    return out
+
+
+def _path(
+    stream: Stream,
+    cutoff_hz: float | None = CUTOFF_HZ,
+    rests: Iterable[tuple[int, int]] = (),
+    noise: tuple[float, float] = (0.0, 0.0),
+) -> RigidTransform:
+    """A stream without noise, its losses filled from both sides; what rests has one pose.
+
+    Each motion is smoothed alone, from the pose of the rest before it to that of the rest after it.
+
+    Args:
+        stream: As it was recorded.
+        cutoff_hz: Of the filter [Hz]; None leaves it as recorded.
+        rests: Intervals of rest. One in which it goes on average further than ``STILL_M`` from its
+            median is none.
+        noise: Deviations of a coordinate and of the turn about an axis [m, rad].
+    """
+    spots, turns = np.array(stream.positions), np.array(stream.orientations)
+    still = np.zeros(len(spots), dtype=bool)
+    for first, last in rests if cutoff_hz else ():
+        part = slice(first, last + 1)
+        known = ~np.isnan(spots[part, 0])
+        if known.any():
+            poses = transforms(spots[part][known], turns[part][known])
+            usual = usual_pose(poses)
+            off, turned = apart(poses, usual)
+            if off.mean() < STILL_M and turned.mean() < STILL_RAD:
+                spots[part], turns[part] = usual.translation, quaternions(usual.rotation)
+                still[part] = True
+    longest = round(LONGEST_S / time_step(stream.times))
+    smooth = _fitted(spots, noise[0], longest), _fitted(turns, 0.5 * noise[1], longest)
+    for first, last in runs(~still):
+        inner, part = slice(first, last + 1), slice(max(first - 1, 0), last + 2)
+        spots[inner], turns[inner] = (each[inner] for each in smooth)
+        one = target(Stream(stream.times[part], spots[part], turns[part]), cutoff_hz=cutoff_hz)
+        spots[part], turns[part] = one.positions, one.orientations
+    made = Stream(stream.times, spots, turns)  # of continuous signs
+    frames, known = np.arange(len(spots)), np.flatnonzero(~made.lost)
+    spots = np.stack([np.interp(frames, known, c[known]) for c in made.positions.T], axis=1)
+    turns = np.stack([np.interp(frames, known, c[known]) for c in made.orientations.T], axis=1)
     return transforms(spots, turns / np.linalg.norm(turns, axis=1, keepdims=True))
 
 
-def _eyes(capture: Capture, cutoff_hz: float | None = CUTOFF_HZ) -> RigidTransform:
+def _fitted(
+    values: Float[np.ndarray, "frames columns"], deviation: float, longest: int
+) -> Float[np.ndarray, "frames columns"]:
+    """At each frame the parabola through the most frames about it that noise allows.
+
+    Windows grow by up to so many frames on both sides, until what they estimate differs by more
+    than noise of that deviation explains: until the confidence intervals no longer all intersect
+    (Goldenshluger and Nemirovski 1997). Frames about a loss stay as they are.
+    """
+    out, low, high = np.array(values), values - SURE * deviation, values + SURE * deviation
+    going, half = ~np.isnan(values[:, 0]), 2
+    while half <= longest and 2 * half < len(values) and going.any():
+        width = 2 * half + 1
+        fit = savgol_filter(values, width, 2, axis=0, mode="interp")
+        weights = [savgol_coeffs(width, 2, pos=row, use="dot") for row in range(half + 1)]
+        doubt = np.full((len(values), 1), SURE * deviation * np.linalg.norm(weights[half]))
+        for row in range(half):  # at the ends by the first and the last whole window
+            doubt[[row, -1 - row]] = SURE * deviation * np.linalg.norm(weights[row])
+        low, high = np.maximum(low, fit - doubt), np.minimum(high, fit + doubt)
+        going &= (low <= high).all(axis=1)
+        out[going] = fit[going]
+        half = max(half + 1, round(WIDER * half))
+    return out
+
+
+def _eyes(
+    capture: Capture,
+    cutoff_hz: float | None = CUTOFF_HZ,
+    rests: Iterable[tuple[int, int]] = (),
+) -> RigidTransform:
     heads = [each for each in capture.sensors if each.end_effector == "head"]
     if not heads:
         raise PlanError(
@@ -347,7 +455,7 @@ def _eyes(capture: Capture, cutoff_hz: float | None = CUTOFF_HZ) -> RigidTransfo
             "stands and looks; there are " + ", ".join(each.name for each in capture.sensors)
         )
     head = heads[0]
-    path = _path(head.stream, cutoff_hz)
+    path = _path(head.stream, cutoff_hz, rests)
     ahead = path.rotation[:START_FRAMES].mean().apply(np.array(head.gaze))
     x = np.array([ahead[0], ahead[1], 0.0]) / np.hypot(ahead[0], ahead[1])
     z = np.array([0.0, 0.0, 1.0])
@@ -358,7 +466,7 @@ def _eyes(capture: Capture, cutoff_hz: float | None = CUTOFF_HZ) -> RigidTransfo
 
 def _stance(human: Human, eyes: RigidTransform) -> tuple[tuple[float, float], float]:
     spot = np.median(eyes.translation[:START_FRAMES], axis=0)
-    ahead = eyes.rotation[0].apply([1.0, 0.0, 0.0])
+    ahead = eyes.rotation[:START_FRAMES].mean().apply([1.0, 0.0, 0.0])
     heading = float(np.arctan2(ahead[1], ahead[0]))
     local = eyes_between(human.measures)
     x = float(spot[0] - np.cos(heading) * local[0])

@@ -50,6 +50,36 @@ def test_the_same_action_comes_out_of_a_good_motion(action: str, agent: str, num
     assert trip.same_contacts
 
 
+NOISY = (("drink", "child", 0), ("sip", "woman", 1), ("touch", "child", 3), ("pick_up", "man", 0))
+
+
+@pytest.mark.parametrize(("action", "agent", "number"), NOISY)
+def test_the_same_comes_of_a_recording_with_a_magnetic_trackers_noise(
+    action: str, agent: str, number: int
+) -> None:
+    source = recorded(action, noisy=True)
+    scene = numbered_scene(source, number, SEED)
+    trip = round_trip(source, agent, body(agent, source), number, scene)
+    assert not trip.failed
+    assert trip.same_par, trip.names
+
+
+def test_what_rests_in_a_noisy_recording_is_at_rest() -> None:
+    source = recorded("touch", noisy=True)
+    for path in (source.paths["crate"], source.hands["left"].path):
+        assert np.ptp(path.translation, axis=0).max() == 0.0
+        assert (path.rotation * path.rotation[0].inv()).magnitude().max() < 1e-7
+    clean = recorded("touch").paths["crate"].translation[0]
+    np.testing.assert_allclose(source.paths["crate"].translation[0], clean, atol=0.001)
+
+
+def test_a_motion_is_smoothed_as_far_as_noise_allows() -> None:
+    clean, noisy = (recorded("pour", noisy=each).paths["mug"].translation for each in (False, True))
+    off = np.linalg.norm(noisy - clean, axis=1)
+    assert np.sqrt(np.mean(off**2)) < 0.001  # the tracker's deviates by 2.6 mm
+    assert off.max() < 0.003
+
+
 @pytest.mark.parametrize("number", [2, 3])
 def test_a_mug_is_emptied_over_the_bowl_wherever_that_stands(number: int) -> None:
     source = recorded("pour")
