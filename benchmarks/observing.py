@@ -7,7 +7,8 @@ with meshes of 10,000 faces, at 100 Hz. Each recording is written as a CSV with 
 observed by the command, in a process of its own: one that observes again knows more than a command
 does. A row is the time within a stage alone, without that of stages that it calls, so that rows add
 up: ``start`` is the interpreter with its imports, ``end`` how it ends, ``elsewhere`` all that has
-no row. Longer ones, ``--minutes 30 60``, take as long again as all before.
+no row. Rows are of the first core; what a second one measures meanwhile is in the processor time of
+the row that waits for it. Longer ones, ``--minutes 30 60``, take as long again as all before.
 """
 
 import argparse
@@ -27,6 +28,7 @@ from pathlib import Path
 from types import GeneratorType
 from typing import Any
 
+OTHER_CORE = "waiting for the other core"
 STAGES: dict[str, tuple[str, ...]] = {
     "rules read": ("capar.cli.options.rule_base",),
     "reading": ("extractors.readers.bundle.capture_toml.read_capture",),
@@ -47,6 +49,10 @@ STAGES: dict[str, tuple[str, ...]] = {
         "extractors.contact.contacts.contacts",
         "extractors.contact.contacts.arrivals",
         "extractors.contact.contacts.blows",
+    ),
+    OTHER_CORE: (
+        "extractors.cores._split_off",
+        "extractors.cores.shared",
     ),
     "contact normals": (
         "extractors.contact.normals.contact_normal",
@@ -200,9 +206,10 @@ def command(folder: str, spawned_s: float) -> dict[str, Any]:
     clock.switch()
     if not seen:
         sys.exit("benchmarks/observing.py: `capar observe` failed")
-    missed = [place for places in STAGES.values() for place in places if place not in clock.called]
-    if missed:
-        sys.exit(f"benchmarks/observing.py: `capar observe` called no {', '.join(missed)}")
+    missed = {place for places in STAGES.values() for place in places} - clock.called
+    split = "extractors.cores._split_off"
+    if missed - {split} and split not in clock.called:  # else the second core may have called it
+        sys.exit(f"benchmarks/observing.py: `capar observe` called no {', '.join(sorted(missed))}")
     return {
         "spent": clock.spent,
         "facts": len(seen[0].facts),
