@@ -50,7 +50,7 @@ def shared(tasks: Sequence[Callable[[], Iterable[_Result]]], frames: int) -> lis
     if others < 1:
         return [list(task()) for task in tasks]
     done: dict[int, list[_Result]] = {}
-    queue = _queue(len(tasks))
+    queue = _queue(min(len(tasks), MOST_TURNS))
     children: list[tuple[int, int]] = []
     try:
         with suppress(OSError):  # No more processes may be started.
@@ -89,16 +89,17 @@ def _may_fork() -> bool:
     return process is None or process.parent_process() is None
 
 
-def _queue(tasks: int) -> int:
-    """A pipe from which each core reads the index of its next task; they are written beforehand."""
+MOST_TURNS, TURN_BYTES = 2048, 2
+"""Cores take so many turns at most [1], each told by so many bytes: any pipe holds 4,096 of them
+without a reader. Of more tasks several are done in a turn."""
+
+
+def _queue(turns: int) -> int:
+    """A pipe from which each core reads its next turn; they are written beforehand."""
     queue, write = os.pipe()
-    os.write(write, b"".join(index.to_bytes(INDEX_BYTES, "big") for index in range(tasks)))
+    os.write(write, b"".join(turn.to_bytes(TURN_BYTES, "big") for turn in range(turns)))
     os.close(write)
     return queue
-
-
-INDEX_BYTES = 2
-"""Length of an index [1]: a pipe holds 65,536 bytes without a reader."""
 
 
 def _taken(
@@ -107,9 +108,10 @@ def _taken(
     parent: int | None = None,
 ) -> Iterator[tuple[int, list[_Result]]]:
     """The results of the tasks that this core takes, by index, as long as the parent lives."""
-    while parent in (None, os.getppid()) and (index := os.read(queue, INDEX_BYTES)):
-        place = int.from_bytes(index, "big")
-        yield place, list(tasks[place]())
+    turns = min(len(tasks), MOST_TURNS)
+    while parent in (None, os.getppid()) and (turn := os.read(queue, TURN_BYTES)):
+        for index in range(int.from_bytes(turn, "big"), len(tasks), turns):
+            yield index, list(tasks[index]())
 
 
 def _split_off(queue: int, tasks: Sequence[Callable[[], Iterable[_Result]]]) -> tuple[int, int]:

@@ -264,15 +264,18 @@ def _passes_over(
         for low, high in busy
     ):
         return False
-    alone = mask([span], len(times)) & ~mask(busy, len(times))
-    still = mask(resting(hand.poses, thresholds), len(times))
-    for first, last in geometry.runs(alone):
+    begin, alone = span[0], np.ones(span[1] - span[0] + 1, dtype=bool)
+    for low, high in busy:
+        alone[max(low - begin, 0) : max(high - begin + 1, 0)] = False
+    still = resting(hand.poses, thresholds)
+    for first, last in ((begin + low, begin + high) for low, high in geometry.runs(alone)):
         whole = (first, last) == span
         if first == 0 or last == len(times) - 1:
             return False
         if duration((first, last), times, float(times[1] - times[0])) >= thresholds.brushing_s:
             return False
-        stands = still[first : last + 1].sum() / frame_rate(times)
+        rests = (min(last, end) - max(first, start) + 1 for start, end in still)
+        stands = sum(each for each in rests if each > 0) / frame_rate(times)
         if stands >= thresholds.rest_minimum_s or (whole and not _keeps_on(hand, span, thresholds)):
             return False
     return True

@@ -73,6 +73,11 @@ def test_tasks_of_a_long_capture_are_done_by_two_processes_and_those_of_a_short_
     assert processes(LONG_FRAMES - 1) == {os.getpid()}
 
 
+def test_more_tasks_than_a_pipe_holds_are_all_done() -> None:
+    found = shared([partial(iter, [index]) for index in range(100_000)], LONG_FRAMES)
+    assert [each for (each,) in found] == list(range(100_000))
+
+
 def test_the_environment_says_how_many_cores_are_used(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(cores.CORES, "1")
     assert processes() == {os.getpid()}
