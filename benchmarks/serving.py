@@ -248,6 +248,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=60.0, help="of each flood")
     parser.add_argument("--triples", type=int, default=100_000)
     asked = parser.parse_args()
+    sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder) / "actionary"
         with Actionary.open(place) as actionary:

@@ -92,6 +92,10 @@ class RefusedError(CaparError):
         super().__init__(message)
 
 
+class UnreadError(RefusedError):
+    """A request whose body is not read; whoever sent it may not take JSON."""
+
+
 STATUSES = (
     ((TimeLimitError, LockedError, BusyError, LostError), 503),
     (UnknownNameError, 404),
@@ -215,11 +219,13 @@ class Service:
 
     def _opened(self) -> Actionary:
         """The Actionary as it is now."""
-        if self._kept is None:
-            self._kept = Actionary.open(self.place, read_only=True)
+        kept, self._kept = self._kept, None  # what fails is opened anew next time
+        if kept is None:
+            kept = Actionary.open(self.place, read_only=True)
         else:
-            self._kept.refresh()
-        return self._kept
+            kept.refresh()
+        self._kept = kept
+        return kept
 
 
 _Answered: TypeAlias = Callable[[Service, Request, bytes, str], Response]
@@ -289,10 +295,9 @@ def refusal(error: CaparError) -> Response:
     headers = {}
     if isinstance(error, RefusedError):
         status = error.status
-        if status in {408, 411, 413}:
-            return _response(
-                f"{error}\n".encode(), "text/plain; charset=utf-8", status, connection="close"
-            )
+        if isinstance(error, UnreadError):
+            headers = {"connection": "close"} if status != 403 else {}
+            return _response(f"{error}\n".encode(), "text/plain; charset=utf-8", status, **headers)
         headers = {"allow": error.allow} if error.allow else {}
     else:
         status = next(code for kinds, code in STATUSES if isinstance(error, kinds))
@@ -506,11 +511,11 @@ class ActionaryServer(uvicorn.Server):
         """Refuse a foreign host's name, or a body without end."""
         length = request.headers.get("content-length")
         if self.loopback and not _names_loopback(request.headers.get("host", "")):
-            raise RefusedError(403, "ask for it by the name localhost or a loopback address")
+            raise UnreadError(403, "ask for it by the name localhost or a loopback address")
         if request.method == "POST" and (length is None or not length.isdecimal()):
-            raise RefusedError(411, "say how long the body is: Content-Length")
+            raise UnreadError(411, "say how long the body is: Content-Length")
         if length is not None and int(length) > LARGEST_BODY:
-            raise RefusedError(413, f"a body may hold {LARGEST_BODY} bytes at most")
+            raise UnreadError(413, f"a body may hold {LARGEST_BODY} bytes at most")
 
     async def _answered(self, request: Request) -> bytes:
         body, more = bytearray(), request.method == "POST"
@@ -519,7 +524,7 @@ class ActionaryServer(uvicorn.Server):
                 async with asyncio.timeout(PATIENCE_S):
                     part = await request.receive()
             except TimeoutError:
-                raise RefusedError(408, "the body did not come") from None
+                raise UnreadError(408, "the body did not come") from None
             if part["type"] == "http.disconnect":
                 raise ClientDisconnect
             body += part.get("body", b"")

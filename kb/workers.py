@@ -34,7 +34,7 @@ Messages behind one that takes longer are given to another process.
 SLOW_S = 0.25
 """After this, if others wait, a process steps aside and goes on at a lower priority [s]."""
 
-MOST_ASIDE, NICENESS = 8, 10
+MOST_ASIDE, NICENESS = AT_WORK, 10
 """How many processes go on aside, and how much they give way; a slow one beyond those is ended."""
 
 MOST_WAITING, LONGEST_WAIT_S = 1024, 1.5
@@ -43,7 +43,7 @@ MOST_WAITING, LONGEST_WAIT_S = 1024, 1.5
 MOST_REMEMBERED = 1024
 """How many messages that were slow are remembered; sent again, they are answered aside."""
 
-MOST_MEMORY, SPENT_MEMORY = 2 << 30, 512 << 20
+MOST_MEMORY, SPENT_MEMORY = 1 << 30, 512 << 20
 """What a process may allocate, and from what size on it is replaced after its answer [bytes]."""
 
 TICK_S = 0.05
@@ -162,7 +162,9 @@ class Workers:
         ours, its = socket.socketpair()
         with its:
             socket.send_fds(self._control, [bytes([limited])], [its.fileno()])
-        return int.from_bytes(self._control.recv(8)), ours
+        if not (pid := int.from_bytes(self._control.recv(8))):
+            raise ChildProcessError("no process could be started to answer")
+        return pid, ours
 
     async def _joined(self, pid: int, channel: socket.socket, to: set[_Worker]) -> _Worker:
         worker = _Worker(pid, self._hear)
