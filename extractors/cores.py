@@ -155,7 +155,9 @@ def _serve(
 def _received(results: int, patience_s: float) -> dict[int, list[Any]]:
     """What a process has sent; nothing if it ended without, or sends nothing for so long [s]."""
     parts: list[bytes] = []
-    while select.select([results], [], [], patience_s)[0]:
+    arrives = select.poll()
+    arrives.register(results, select.POLLIN)
+    while arrives.poll(1000.0 * patience_s):
         part = os.read(results, 1 << 20)
         if not part:
             break
