@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from kb import Actionary
 
 SAME = "same"
+GATES_FAILED = 3  # The exit code of a performance that was written although a gate failed.
 TRIP_COLUMNS = "scene  same PAR  contacts  relations  gates  where not"
 
 
@@ -67,11 +68,17 @@ class _Task(NamedTuple):
             )
         return self.agents[0]
 
-    def finish(self, value: Any) -> None:
-        """Print the answer for machines, or as text and where the files are."""
+    def finish(self, value: dict[str, Any]) -> None:
+        """Print the answer for machines, or as text and where the files are.
+
+        Raises:
+            Exit: A gate failed.
+        """
         answer(value, json=self.json)
         if self.folder and not self.json:
             typer.echo(f"wrote {self.folder}", err=True)
+        if not all(each["passed"] for each in value.get("performed", [value])):
+            raise typer.Exit(GATES_FAILED)
 
 
 def regenerate(

@@ -17,7 +17,8 @@ motion  as planned                                        nearly all
 refuse  remedies: nearer, higher, lower, smaller, taller  what is out of reach
 ======  ================================================  ======================================
 
-The motion that fails fewest gates (``quality``) is kept. ``paths`` tries the paths.
+The motion that fails fewest gates (``quality``) is kept, if only ``MOST_FRAMES`` were tried.
+``paths`` tries the paths.
 """
 
 import itertools
@@ -58,6 +59,11 @@ BY_CARE = {"penetration", "free hand clear", "event position", "event rotation",
 MOST_TURNS, FEW_TURNS = 24, 6
 """Turns of a grip that are tried; where another place or a remedy is sought [1]."""
 
+MOST_FRAMES = 8000
+"""Frames of all motions that are tried, so that a search ends; more only of a first motion [1].
+
+A frame takes 3 ms, so that they take less than 30 s."""
+
 APART_M = 0.02
 """Objects that a hand takes together are no more than this farther apart than they were [m]."""
 
@@ -94,15 +100,16 @@ def regenerate(
 def best_motion(draft: Draft) -> tuple[Motion, Quality]:
     """The motion of a draft with grips that fails fewest gates."""
     tried: list[tuple[Motion, Quality]] = []
+    most = max(MOST_FRAMES // len(draft.source.times), 1)
     for guided in (False, True) if draft.grips else (False,):
+        if len(tried) == most or (tried and min(tried, key=_failures)[1].passed):
+            break
         guide = guide_of(draft) if guided else None
-        for care in CARES:
+        for care in CARES[: most - len(tried)]:
             motion = perform_plan(led(draft, care), guide)
             tried.append((motion, quality(motion)))
             if not BY_CARE & set(tried[-1][1].failed):
                 break
-        if min(tried, key=_failures)[1].passed:
-            break
     return min(tried, key=_failures)
 
 

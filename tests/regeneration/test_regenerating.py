@@ -13,10 +13,10 @@ from capar.body.recording import Truth, write_bundle
 from capar.body.scripted_actions import action_capture
 from capar.model.capture import Capture
 from capar.pipelines.round_trips import body, observed_source, round_trips
-from capar.regeneration import Motion, PlanError, Quality, regenerate
+from capar.regeneration import Motion, PlanError, Quality, regenerate, search
 from capar.regeneration.body_frames import body_frames
 from capar.regeneration.direct_mapping import departures
-from capar.regeneration.quality import quality
+from capar.regeneration.quality import Gate, quality
 from capar.regeneration.scenes import raised
 from capar.regeneration.search import reachable
 from capar.regeneration.sources import body_hand_frame
@@ -146,6 +146,23 @@ def test_a_regenerated_bundle_is_observed_as_the_same_action(
     assert again.agent.kind == "child"
     assert exit_code(monkeypatch, "regenerate", str(folder), "--output", str(child)) == 2
     assert "not an empty folder" in capsys.readouterr().err
+
+
+FAILED = Quality((Gate("penetration", -2.0, -1.0, "mm", at_least=True),))
+
+
+def test_a_motion_that_fails_a_gate_is_written_and_the_exit_code_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tried: list[Motion] = []
+    monkeypatch.setattr(search, "quality", lambda motion: tried.append(motion) or FAILED)
+    monkeypatch.setattr(search, "MOST_FRAMES", 1)
+    folder = _written(action_capture("touch", rate_hz=RATE_HZ), tmp_path / "man")
+    output = tmp_path / "again"
+    assert exit_code(monkeypatch, "regenerate", str(folder), "--output", str(output)) == 3
+    assert "penetration" in capsys.readouterr().out
+    assert (output / "capture.toml").exists()
+    assert len(tried) == 1  # more frames than are tried in all
 
 
 def test_a_capture_without_a_head_is_refused() -> None:
