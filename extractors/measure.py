@@ -747,10 +747,10 @@ def measured(
     }
     looks = {sensor.name: attention(capture, sensor, bodies, limits) for sensor in seeing(capture)}
     near = contacts(capture, bodies, calibration, limits)
-    ways = {name: trial.moved_poses(name) for name in trial.mobile}
-    moved = shared([partial(trial.motion, *way, near) for way in ways.items()], frames)
+    poses = {name: trial.moved_poses(name) for name in trial.mobile}
+    moved = shared([partial(trial.motion, *each, near) for each in poses.items()], frames)
     moves = [each for found in moved for each in found if not isinstance(each, Arriving)]
-    last = ((name, found[-1]) for name, found in zip(ways, moved, strict=True) if found)
+    last = ((name, found[-1]) for name, found in zip(poses, moved, strict=True) if found)
     arriving = {name: each for name, each in last if isinstance(each, Arriving)}
     touches = tuple(arrivals(capture, bodies, calibration, near, moves, limits))
     touches += tuple(blows(capture, bodies, calibration, touches, _motions(moves), limits))
