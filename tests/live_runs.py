@@ -30,13 +30,13 @@ CAPTURES: dict[str, Callable[[], Capture]] = {
     "one leg": lambda: motions.stand_on_one_leg(motions.WOMAN).capture,
     "thrown": lambda: throw(motions.WOMAN).capture,
     "kicked": lambda: kick(motions.WOMAN).capture,
-    "sliding on and on": lambda: repeated(motions.slide_object(motions.WOMAN).capture, 5),
+    "sliding on and on": lambda: repeated(motions.slide_object(motions.WOMAN).capture, 3),
     "whisk and bottle": lambda: trial_of(f"{EXAMPLES}/bimacs_optitrack:take0"),
     "bowl stirred twice": lambda: trial_of(f"{EXAMPLES}/bimacs_optitrack:take5"),
     "box carried": lambda: trial_of(
         f"{EXAMPLES}/omomo_intermimic/largebox_hands.toml:sub3_largebox_003"
     ),
-    "drinking on and on": lambda: repeated(trial_of(DEMO), 5),
+    "drinking on and on": lambda: repeated(trial_of(DEMO), 3),
 }
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from combinations import EVERY
 from virtual_bodies.drinking import steps_of
 
 from capar import regeneration
@@ -33,6 +34,7 @@ from extractors.readers.bundle.capture_toml import read_capture
 pytestmark = pytest.mark.long
 
 RATE_HZ = 30.0
+BODIES = ("man", "woman", "child") if EVERY else ("man", "child")
 
 
 def _scene(human: Human) -> Scene:
@@ -165,7 +167,7 @@ def test_what_cannot_be_reached_is_refused_with_the_distance() -> None:
 FAST_HZ = 60.0
 
 
-@pytest.mark.parametrize("who", ["man", "child"])
+@pytest.mark.parametrize("who", BODIES)
 def test_between_the_hands_only_gravity_moves_it(who: str) -> None:
     made = performed("toss", who, rate_hz=FAST_HZ)
     ((start, end),) = [(start, end) for name, start, end in made.phases if name == "fly"]
@@ -176,7 +178,7 @@ def test_between_the_hands_only_gravity_moves_it(who: str) -> None:
     np.testing.assert_allclose(bent, np.tile(GRAVITY_MPS2, (len(bent), 1)), atol=1e-6)
 
 
-@pytest.mark.parametrize("who", ["man", "woman", "child"])
+@pytest.mark.parametrize("who", BODIES)
 def test_it_is_observed_as_thrown_by_one_hand_and_caught_by_the_other(who: str) -> None:
     seen = observe(action_capture("toss", who, rate_hz=FAST_HZ), rules="extended")
     names = {
@@ -199,7 +201,7 @@ SIPS = {
 """The published steps (thesis 5.2.1); Drink is a MoveObj."""
 
 
-@pytest.mark.parametrize("who", ["man", "woman", "child"])
+@pytest.mark.parametrize("who", BODIES)
 @pytest.mark.parametrize("noisy", [False, True])
 @pytest.mark.parametrize("profile", ["extended", "thesis"])
 def test_a_sip_is_the_published_six_steps(who: str, profile: str, *, noisy: bool) -> None:
