@@ -485,6 +485,7 @@ class ActionaryServer(uvicorn.Server):
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Look after the processes, and answer."""
         self._watching = asyncio.create_task(self._workers.watch())
+        self._watching.add_done_callback(lambda _: setattr(self, "should_exit", True))
         await super().startup(sockets)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:

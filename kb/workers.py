@@ -160,10 +160,13 @@ class Workers:
             self._control.close()
             self._nursery()
         ours, its = socket.socketpair()
-        with its:
+        pid = 0
+        with its, suppress(OSError):
             socket.send_fds(self._control, [bytes([limited])], [its.fileno()])
-        if not (pid := int.from_bytes(self._control.recv(8))):
-            raise ChildProcessError("no process could be started to answer")
+            pid = int.from_bytes(self._control.recv(8))
+        if pid == 0:
+            ours.close()
+            raise BusyError("no process could be started")
         return pid, ours
 
     async def _joined(self, pid: int, channel: socket.socket, to: set[_Worker]) -> _Worker:
@@ -284,7 +287,7 @@ class Workers:
                     await self._judge(worker)
             for message in [*self._slow][:-MOST_REMEMBERED]:
                 del self._slow[message]
-            with suppress(OSError):  # tried again at the next tick
+            with suppress(BusyError):  # tried again at the next tick
                 while len(self._workers) < AT_WORK + STANDING_BY:
                     await self._joined(*self._started(), self._workers)
             self._dispatch()
@@ -292,9 +295,12 @@ class Workers:
     async def _judge(self, worker: _Worker) -> None:
         """Have a slow process step aside, or end it."""
         first = worker.asked[0]
-        if first is None or (first.gone is not None and await first.gone()):
+        gone = first is None or (first.gone is not None and await first.gone())
+        if first not in islice(worker.asked, 1):
+            return  # it has answered meanwhile
+        if first is None or gone:
             worker.end()
-        elif self._waiting and worker in self._workers and worker.asked[0] is first:
+        elif self._waiting and worker in self._workers:
             self._slow[hash(first.message)] = None
             if len(self._aside) < MOST_ASIDE:
                 self._workers.discard(worker)

@@ -249,6 +249,18 @@ def test_who_writes_at_once_writes_one_after_the_other(tmp_path) -> None:
         assert len(actionary.observations()) == 4
 
 
+def test_processes_that_are_all_killed_are_replaced(place) -> None:
+    others = set(descendants(os.getpid()))
+    with serving(Service(place)) as url:
+        assert status(url, NAMES) == 200
+        for pid in {*descendants(os.getpid())} - others:
+            os.kill(pid, signal.SIGKILL)
+        assert {status(url, NAMES) for _ in range(3)} <= {200, 503}
+        deadline = time.monotonic() + 30.0
+        while status(url, NAMES) != 200:
+            assert time.monotonic() < deadline
+
+
 def test_a_query_whose_client_is_gone_is_ended(place) -> None:
     with serving(Service(place)) as url:
         host, _, port = url.removeprefix("http://").rstrip("/").partition(":")
