@@ -1,8 +1,8 @@
 """Record what users get, and compare it with an earlier record.
 
-    python benchmarks/outputs.py FOLDER                      # everything, into FOLDER
-    python benchmarks/outputs.py FOLDER --against EARLIER    # and print what differs
-    python benchmarks/outputs.py FOLDER --only observe --match 'demo|box'
+    python tests/outputs.py FOLDER                      # everything, into FOLDER
+    python tests/outputs.py FOLDER --against EARLIER    # and print what differs
+    python tests/outputs.py FOLDER --only observe --match 'demo|box'
 
 Sections: ``observe`` (demo and every recording: segments, borders, objects, PARs, movers, counts
 and hashes of each kind of fact), ``scenes`` (one in ten of the batteries), ``questions`` (every
