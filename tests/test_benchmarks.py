@@ -30,9 +30,7 @@ SMALLEST = {
 }
 """The options with which each takes no more than some seconds."""
 
-STARTED = sorted(
-    path.stem for path in BENCHMARKS.glob("*.py") if path.stem != "scene"
-)
+STARTED = sorted(path.stem for path in BENCHMARKS.glob("*.py") if path.stem != "scene")
 
 
 @pytest.mark.parametrize("name", STARTED)
