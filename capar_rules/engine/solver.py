@@ -1,9 +1,10 @@
 """Facts in, atoms out: rules grounded and solved by clingo, in slices and within limits."""
 
+import json
 import re
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache, wraps
+from functools import cache, cached_property, lru_cache, wraps
 from hashlib import sha256
 from importlib import resources
 from itertools import chain, islice
@@ -16,7 +17,40 @@ import clingo
 from capar.model.capture import NAME
 from capar.model.errors import NoAnswerError, RuleError
 from capar.model.facts import Fact, program, signatures
-from capar_rules.engine.syntax import Signature, Statement, asked_for, firing, parse
+from capar_rules.engine.syntax import Signature, asked_for, fired, heads_of, needed, parse
+
+Row = tuple[str, list[str], list[str]]
+"""A rule or directive: its text, and the predicates that it defines and needs, as name/arity."""
+
+
+def reduced(files: Iterable[Path]) -> list[Row]:
+    """Every directive of rule files, and the rules on which what is shown depends."""
+    statements = asked_for([each for each in parse(files) if each.kind != "comment"])
+    return [
+        (each.text, sorted(map(_slashed, heads_of([each]))), sorted(map(_slashed, needed(each))))
+        for each in statements
+    ]
+
+
+def _slashed(signature: Signature) -> str:
+    return f"{signature[0]}/{signature[1]}"
+
+
+REDUCED = "engine/reduced.json"
+"""The shipped rules, reduced: rows by the fingerprint of their files."""
+
+
+@cache
+def _shipped() -> dict[str, list[Row]]:
+    path = rule_file(REDUCED)
+    found: dict[str, list[Row]] = json.loads(path.read_bytes()) if path.is_file() else {}
+    return found
+
+
+def store_reduced(bases: Iterable[tuple[Path, ...]]) -> None:
+    """Reduce these rule bases, and store them beside the rules."""
+    found = {fingerprint(files): reduced(files) for files in bases}
+    rule_file(REDUCED).write_text(json.dumps(found, indent=0) + "\n", encoding="utf-8")
 
 
 class RuleBase:
@@ -28,12 +62,13 @@ class RuleBase:
         """What remains of the rules for facts of these predicates."""
         self.asked = 0
         """How often they were asked [1]."""
+        self.known = _shipped().get(fingerprint(self.files))
+        """What is stored of them; None of rules that are not shipped."""
 
     @cached_property
-    def statements(self) -> tuple[Statement, ...]:
-        """The rules and directives, without comments: reading them takes 0.2 s."""
-        found = parse(self.files)
-        return tuple(statement for statement in found if statement.kind != "comment")
+    def rows(self) -> list[Row]:
+        """The rules on which an answer depends: reading them from their files takes 0.2 s."""
+        return reduced(self.files) if self.known is None else self.known
 
     def program(self, measured: frozenset[Signature]) -> str:
         """Every directive, and the rules on which the answer depends.
@@ -41,9 +76,8 @@ class RuleBase:
         ``measured``: the only predicates that have facts.
         """
         if measured not in self.programs:
-            fired = {id(rule) for rule in firing(self.statements, measured)}
-            kept = (part for part in self.statements if part.kind != "rule" or id(part) in fired)
-            self.programs[measured] = "\n".join(part.text for part in asked_for(tuple(kept)))
+            numbers = fired([row[1:] for row in self.rows], map(_slashed, measured))
+            self.programs[measured] = "\n".join(self.rows[number][0] for number in numbers)
         return self.programs[measured]
 
 
@@ -51,12 +85,8 @@ BLOCK_FACTS = 4096
 """How many facts are given to the solver as one text [1]."""
 
 OFTEN = 2
-"""How often rules are loaded whole, and all remarks of the solver heard, before they are reduced to
-what the answer depends on; reading them for that takes as long as five answers [1]."""
-
-MANY_FACTS = 50_000
-"""Over more facts, those of a minute or two of handling, rules are reduced at once: what no answer
-depends on would take more time and memory than reading them [1]."""
+"""How often rules that are not shipped are loaded whole, and all remarks of the solver heard,
+before they are reduced to what the answer depends on, which takes as long as five answers [1]."""
 
 Term = int | str | tuple["Term", ...]
 """A value of the rules: a number, a name or text, or a compound as (functor, arguments...)."""
@@ -267,18 +297,13 @@ def _grounded(files: Iterable[Path], facts: str | Iterable[Fact], option: str) -
 def _program(
     files: tuple[Path, ...], facts: str | Iterable[Fact]
 ) -> tuple[tuple[Path, ...], Iterator[str]]:
-    """Files to load, and texts to add: rules that are asked often are a text instead of files.
-
-    So are those over many facts, once all remarks on them were heard.
-    """
+    """Files to load, and texts to add: shipped rules, and those asked often, are a text."""
     if isinstance(facts, str):
         return files, iter([facts])
     facts = tuple(facts)
     base = _rule_base(files, tuple(_contents(files).values()))
     base.asked += 1
-    if base.asked <= OFTEN and len(facts) > MANY_FACTS:
-        _grounded(files, "", "--models=1")
-    elif base.asked <= OFTEN:
+    if base.known is None and base.asked <= OFTEN:
         return files, _texts(facts)
     return (), chain([base.program(signatures(facts))], _texts(facts))
 

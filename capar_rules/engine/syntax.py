@@ -2,11 +2,11 @@
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Lock
-from typing import Any
+from typing import Any, TypeVar
 
 from clingo import MessageCode, ast
 
@@ -19,6 +19,8 @@ ANSWERS = 8
 
 Signature = tuple[str, int]
 """A predicate: its name and its number of arguments."""
+
+_Predicate = TypeVar("_Predicate", bound=Hashable)
 
 LARGEST_BYTES = 256 * 1024
 """Greatest size of a rule file, which people are to read [bytes]."""
@@ -330,24 +332,34 @@ def firing(statements: Sequence[Statement], measured: Iterable[Signature]) -> li
 
     ``statements``: A rule base. ``measured``: predicates that have a fact.
     """
-    known, fired = set(measured), set[int]()
-    needs = [
-        (
-            number,
-            each,
-            {
-                literal.atoms[0].signature
-                for literal in each.body
-                if literal.kind == "atom" and literal.sign == 0
-            },
-        )
-        for number, each in enumerate(statements)
-    ]
-    while found := [(number, each) for number, each, needed in needs if needed <= known]:
-        fired |= {number for number, _ in found}
-        known |= heads_of(each for _, each in found)
-        needs = [each for each in needs if each[0] not in fired]
-    return [each for number, each in enumerate(statements) if number in fired]
+    parts = [(heads_of([each]), needed(each)) for each in statements]
+    return [statements[number] for number in fired(parts, measured)]
+
+
+def needed(statement: Statement) -> frozenset[Signature]:
+    """The predicates without which a rule cannot fire."""
+    return frozenset(
+        literal.atoms[0].signature
+        for literal in statement.body
+        if literal.kind == "atom" and literal.sign == 0
+    )
+
+
+def fired(
+    parts: Sequence[tuple[Collection[_Predicate], Collection[_Predicate]]],
+    measured: Iterable[_Predicate],
+) -> list[int]:
+    """The numbers of the rules that can fire, in order.
+
+    ``parts``: for each rule the predicates that it defines and those that it needs. ``measured``:
+    predicates that have a fact.
+    """
+    known, found, waiting = set(measured), set[int](), range(len(parts))
+    while now := [number for number in waiting if known.issuperset(parts[number][1])]:
+        found.update(now)
+        known.update(*(parts[number][0] for number in now))
+        waiting = [number for number in waiting if number not in found]
+    return sorted(found)
 
 
 def asked_for(statements: Sequence[Statement]) -> list[Statement]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from capar_rules.engine.profiles import profile
-from capar_rules.engine.solver import Atom, brave, rule_file, worlds
+from capar_rules.engine.solver import Atom, brave, rule_file, store_reduced, worlds
 from capar_rules.engine.syntax import (
     FITS,
     Signature,
@@ -290,7 +290,8 @@ def _unpacked(packed: Mapping[str, str]) -> dict[str, Worlds]:
 
 
 def store() -> None:
-    """Compute and store the extents of every profile."""
+    """Compute and store the extents of every profile, and its rules reduced for the solver."""
+    store_reduced(profile(name).files for name in PROFILES)
     stored = {}
     for name in PROFILES:
         rules = parse(profile(name).files)
