@@ -354,7 +354,7 @@ def fired(
     ``parts``: for each rule the predicates that it defines and those that it needs. ``measured``:
     predicates that have a fact.
     """
-    known, found, waiting = set(measured), set[int](), range(len(parts))
+    known, found, waiting = set(measured), set[int](), list(range(len(parts)))
     while now := [number for number in waiting if known.issuperset(parts[number][1])]:
         found.update(now)
         known.update(*(parts[number][0] for number in now))
