@@ -32,11 +32,11 @@ def line(action: str, trip: Trip) -> str:
     return f"{head}{same}; {failures(trip.quality) or 'every gate passed'}"
 
 
-def performed(actions: list[str], scenes: int) -> None:
+def performed(actions: list[str], scenes: int, *, rate_hz: float, noisy: bool) -> None:
     """Trips of some actions, and how many come out well."""
     for action in actions:
         counts = Counter[str]()
-        source = observed_source(action_capture(action, rate_hz=30.0))
+        source = observed_source(action_capture(action, rate_hz=rate_hz, noisy=noisy))
         for trip in round_trips(source, AGENTS, scenes=scenes, seed=SEED):
             print(line(action, trip), flush=True)
             counts["asked"] += 1

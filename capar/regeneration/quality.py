@@ -17,7 +17,7 @@ from capar.regeneration.forces import ForceKind, end_velocity, flight_faults
 from capar.regeneration.goals import scene_constraints
 from capar.regeneration.holds import FRICTION, SETTLED_M
 from capar.regeneration.motion import Motion
-from capar.regeneration.paths import borne_steadily
+from capar.regeneration.paths import SUNK_M, borne_steadily
 from capar.regeneration.planning import Plan
 from capar.regeneration.solving import vectors
 from capar.regeneration.styles import Kind, way
@@ -25,6 +25,7 @@ from capar.regeneration.styles import Kind, way
 LEAVING_S = 0.3
 """So long before and after a hold a hand may be near what it holds and what stands beside [s]."""
 
+TOLD_M = 0.0005  # Objects that are deeper inside each other at first are reported [m].
 MOVING_M = 0.05  # A shorter path has no profile of speed [m].
 
 
@@ -118,7 +119,7 @@ def distance_gate(name: str, limit_mm: float, nearest: tuple[Pair, int]) -> Gate
 def quality(motion: Motion) -> Quality:
     """Verify a motion at every frame."""
     plan, hands = motion.plan, performed_hands(motion)
-    contacts, thumb = _contact_gates(motion)
+    contacts, told = _contact_gates(motion)
     feet = plan.human.sites(motion.postures, ["right_foot", "left_foot"])
     slid = (worst_of(_gone(spots), name) for name, (spots, _) in feet.items())
     gates = (
@@ -133,7 +134,7 @@ def quality(motion: Motion) -> Quality:
         *_borne_gates(plan),
         *_together_gates(plan, hands),
     )
-    return Quality(gates, (thumb,))
+    return Quality(gates, told)
 
 
 def _gone(spots: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
@@ -229,14 +230,18 @@ def _throw_gates(plan: Plan, hands: Mapping[str, RigidTransform]) -> Iterator[Ga
         yield within("flight speed", max(jump), 0.3, "m/s")
 
 
-def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
+def _contact_gates(motion: Motion) -> tuple[list[Gate], tuple[Measure, ...]]:
     """Penetration of anything, and how far free hands keep from what they do not touch.
 
     A thumb is not posed, and its mannequin's base stands out from the palm: what it cuts of the
-    object that its hand takes is reported apart.
+    object that its hand takes is reported apart, and so is what objects cut of each other as they
+    stand at first, which is counted from there.
     """
     plan, deepest, inside = motion.plan, [], set[frozenset[str]]()
     around = Surroundings(plan.human, plan.scene)
+    around.pose(motion.postures[0], {name: path[0] for name, path in plan.things.items()})
+    sunk = [pair for pair in around.things_near() if -SUNK_M <= pair.distance_m < 0.0]
+    first_m = {frozenset((pair.part, pair.thing)): pair.distance_m for pair in sunk}
     for load in plan.source.loads:  # in a hollow object, as far from its surface all the way
         bearer, thing = (plan.scene.thing(name).shape for name in (load.bearer, load.thing))
         seat = plan.things[load.bearer][load.first].inv() * plan.things[load.thing][load.first]
@@ -264,8 +269,10 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
             if is_hand(pair.part) and side in plan.hands and side not in busy:
                 nearest.append((pair, frame))
         for pair in around.things_near():
-            if frozenset((pair.part, pair.thing)) not in inside:
-                deepest.append((pair, frame))
+            both = frozenset((pair.part, pair.thing))
+            if both not in inside:
+                by_m = pair.distance_m - first_m.get(both, 0.0)
+                deepest.append((replace(pair, distance_m=by_m), frame))
     far = (Pair(np.inf, "", ""), -1)
     gates = [
         distance_gate("penetration", -1.0, min(deepest, default=far)),
@@ -273,7 +280,14 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], Measure]:
     ]
     pair, frame = min(thumbs, default=far)
     bodies = f"{pair.part}, {pair.thing}"
-    return gates, Measure("thumb and what it holds", 1e3 * pair.distance_m, "mm", frame, bodies)
+    told = [Measure("thumb and what it holds", 1e3 * pair.distance_m, "mm", frame, bodies)]
+    for pair in sunk:
+        if pair.distance_m < -TOLD_M:
+            names = f"{pair.part}, {pair.thing}"
+            told.append(
+                Measure("inside each other at first", 1e3 * pair.distance_m, "mm", 0, names)
+            )
+    return gates, tuple(told)
 
 
 def is_hand(part: str) -> bool:

@@ -17,7 +17,7 @@ from capar.regeneration import Motion, PlanError, Quality, regenerate, search
 from capar.regeneration.body_frames import body_frames
 from capar.regeneration.direct_mapping import departures
 from capar.regeneration.quality import Gate, quality
-from capar.regeneration.scenes import raised
+from capar.regeneration.scenes import moved, raised
 from capar.regeneration.search import reachable
 from capar.regeneration.sources import body_hand_frame
 
@@ -146,6 +146,18 @@ def test_a_regenerated_bundle_is_observed_as_the_same_action(
     assert again.agent.kind == "child"
     assert exit_code(monkeypatch, "regenerate", str(folder), "--output", str(child)) == 2
     assert "not an empty folder" in capsys.readouterr().err
+
+
+def test_what_stands_a_little_inside_another_is_reported_and_no_fault_of_the_motion() -> None:
+    source = recorded("touch")
+    crate = source.scene.thing("crate")
+    x, y, z = crate.place
+    _, found = regenerate(
+        source, source.human, moved(source.scene, "crate", (x, y, z - 0.003), crate.heading)
+    )
+    assert found.passed, found.failed
+    inside = {measure.name: measure.value for measure in found.told}
+    assert inside["inside each other at first"] == pytest.approx(-3.0, abs=0.1)
 
 
 FAILED = Quality((Gate("penetration", -2.0, -1.0, "mm", at_least=True),))
