@@ -70,9 +70,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("actions", nargs="*", metavar="ACTION", help=", ".join(("all", *ACTIONS)))
     parser.add_argument("--scenes", type=int, default=2, help="how many are drawn")
+    parser.add_argument("--noisy", action="store_true", help="with a magnetic tracker's noise")
+    parser.add_argument("--rate", type=float, default=30.0, help="frames a second")
     asked = parser.parse_args()
     if asked.actions:
-        performed(list(ACTIONS) if asked.actions == ["all"] else asked.actions, asked.scenes)
+        actions = list(ACTIONS) if asked.actions == ["all"] else asked.actions
+        performed(actions, asked.scenes, rate_hz=asked.rate, noisy=asked.noisy)
         return
     for row in TIMED:
         print(timed(*row), flush=True)
