@@ -1,14 +1,17 @@
 """Facts in, atoms out: rules grounded and solved by clingo, in slices and within limits."""
 
 import json
+import os
 import re
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache, wraps
 from hashlib import sha256
 from importlib import resources
 from itertools import chain, islice
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 from time import monotonic
 from typing import Any, ParamSpec, TypeVar, cast
 
@@ -17,6 +20,7 @@ import clingo
 from capar.model.capture import NAME
 from capar.model.errors import NoAnswerError, RuleError
 from capar.model.facts import Fact, program, signatures
+from capar_rules.engine import syntax
 from capar_rules.engine.syntax import Signature, asked_for, fired, heads_of, needed, parse
 
 Row = tuple[str, list[str], list[str]]
@@ -40,6 +44,10 @@ REDUCED = "engine/reduced.json"
 """The shipped rules, reduced: rows by the fingerprint of their files."""
 
 
+MOST_KEPT = 64
+"""How many reduced rule bases of users are kept, the latest ones [1]."""
+
+
 @cache
 def _shipped() -> dict[str, list[Row]]:
     path = rule_file(REDUCED)
@@ -48,9 +56,38 @@ def _shipped() -> dict[str, list[Row]]:
 
 
 def store_reduced(bases: Iterable[tuple[Path, ...]]) -> None:
-    """Reduce these rule bases, and store them beside the rules."""
+    """Reduce these rule bases, and store them beside the rules, a rule a line."""
     found = {fingerprint(files): reduced(files) for files in bases}
-    rule_file(REDUCED).write_text(json.dumps(found, indent=0) + "\n", encoding="utf-8")
+    text = json.dumps(found).replace('], ["', '],\n["')
+    rule_file(REDUCED).write_text(text + "\n", encoding="utf-8")
+
+
+def _kept(files: tuple[Path, ...], measured: Iterable[Signature]) -> list[Row]:
+    """A rule base reduced: as it is shipped, or kept since it was first asked of such predicates.
+
+    Raises:
+        RuleError: The solver has a remark on rules that are not kept.
+    """
+    mark = fingerprint(files)
+    if mark in _shipped():
+        return _shipped()[mark]
+    way = sha256(Path(syntax.__file__).read_bytes()).hexdigest()
+    place = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "capar" / "rules"
+    path = place / f"{mark}-{way[:8]}.json"
+    with suppress(OSError, ValueError):
+        if kept := json.loads(path.read_bytes()):
+            return cast(list[Row], kept)
+    defined = "".join(f"#defined {name}/{arity}.\n" for name, arity in sorted(measured))
+    _grounded(files, defined, "--models=1")
+    rows = reduced(files)
+    with suppress(OSError):  # They are reduced again by the next process.
+        place.mkdir(parents=True, exist_ok=True)
+        with NamedTemporaryFile("w", dir=place, delete=False, encoding="utf-8") as file:
+            json.dump(rows, file)
+        Path(file.name).replace(path)
+        for old in sorted(place.iterdir(), key=lambda each: each.stat().st_mtime)[:-MOST_KEPT]:
+            old.unlink()
+    return rows
 
 
 class RuleBase:
@@ -60,15 +97,8 @@ class RuleBase:
         self.files = tuple(files)
         self.programs: dict[frozenset[Signature], str] = {}
         """What remains of the rules for facts of these predicates."""
-        self.asked = 0
-        """How often they were asked [1]."""
-        self.known = _shipped().get(fingerprint(self.files))
-        """What is stored of them; None of rules that are not shipped."""
-
-    @cached_property
-    def rows(self) -> list[Row]:
-        """The rules on which an answer depends: reading them from their files takes 0.2 s."""
-        return reduced(self.files) if self.known is None else self.known
+        self.rows: list[Row] = []
+        """Those on which an answer depends, once they were asked [1]."""
 
     def program(self, measured: frozenset[Signature]) -> str:
         """Every directive, and the rules on which the answer depends.
@@ -76,6 +106,7 @@ class RuleBase:
         ``measured``: the only predicates that have facts.
         """
         if measured not in self.programs:
+            self.rows = self.rows or _kept(self.files, measured)
             numbers = fired([row[1:] for row in self.rows], map(_slashed, measured))
             self.programs[measured] = "\n".join(self.rows[number][0] for number in numbers)
         return self.programs[measured]
@@ -83,10 +114,6 @@ class RuleBase:
 
 BLOCK_FACTS = 4096
 """How many facts are given to the solver as one text [1]."""
-
-OFTEN = 2
-"""How often rules that are not shipped are loaded whole, and all remarks of the solver heard,
-before they are reduced to what the answer depends on, which takes as long as five answers [1]."""
 
 Term = int | str | tuple["Term", ...]
 """A value of the rules: a number, a name or text, or a compound as (functor, arguments...)."""
@@ -274,6 +301,7 @@ def _grounded(files: Iterable[Path], facts: str | Iterable[Fact], option: str) -
     def note(_: clingo.MessageCode, message: str) -> None:
         messages.append(message.strip())
 
+    facts = facts if isinstance(facts, str) else tuple(facts)
     loaded, texts = _program(tuple(files), facts)
     # Every rule file includes what it reads, so that a file is named twice is no fault.
     options = [option, "--warn=no-file-included"]
@@ -288,23 +316,21 @@ def _grounded(files: Iterable[Path], facts: str | Iterable[Fact], option: str) -
             control.add("base", [], text)
         control.ground([("base", [])])
     except RuntimeError as error:
-        raise RuleError("\n".join(messages) or str(error)) from None
+        messages = messages or [str(error)]
+    if messages and not loaded and not isinstance(facts, str):
+        return _grounded(files, program(facts), option)  # which says where in the files
     if messages:
         raise RuleError("\n".join(messages))
     return control
 
 
 def _program(
-    files: tuple[Path, ...], facts: str | Iterable[Fact]
+    files: tuple[Path, ...], facts: str | tuple[Fact, ...]
 ) -> tuple[tuple[Path, ...], Iterator[str]]:
-    """Files to load, and texts to add: shipped rules, and those asked often, are a text."""
+    """Files to load, and texts to add: those of the rules reduced, but where facts are a text."""
     if isinstance(facts, str):
         return files, iter([facts])
-    facts = tuple(facts)
     base = _rule_base(files, tuple(_contents(files).values()))
-    base.asked += 1
-    if base.known is None and base.asked <= OFTEN:
-        return files, _texts(facts)
     return (), chain([base.program(signatures(facts))], _texts(facts))
 
 

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from capar.model.facts import Fact, Frames, Touching, ZeroCrossing
+from capar.model.errors import RuleError
+from capar.model.facts import Fact, Frames, Touching, ZeroCrossing, program
 from capar_rules.engine import solver, syntax
 from capar_rules.engine.solver import brave
 from capar_rules.engine.syntax import Signature, asked_for, firing, parse, parse_text
@@ -46,21 +47,45 @@ CROSSINGS = [ZeroCrossing("man", 12)]
 
 
 @pytest.mark.parametrize("facts", [TOUCHES, CROSSINGS, TOUCHES + CROSSINGS, [Frames(0, 99)]])
-def test_rules_that_are_asked_often_answer_as_they_did_at_first(
-    facts: list[Fact], tmp_path: Path
+@pytest.mark.parametrize("kept", [None, "", '[["named(', "null"])
+def test_rules_that_are_reduced_or_kept_answer_as_whole_ones(
+    facts: list[Fact], kept: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     rules = tmp_path / "rules.lp"
     rules.write_text(REACHED)
-    first = solver.solve([rules], facts)
-    later = [solver.solve([rules], facts) for _ in range(solver.OFTEN + 1)]
-    assert later == [first] * len(later)
+    whole = solver.solve([rules], program(facts))
+    for _ in range(2):
+        solver._rule_base.cache_clear()
+        assert solver.solve([rules], facts) == whole
+        (stored,) = tmp_path.glob("capar/rules/*.json")
+        if kept is not None:
+            stored.write_text(kept)
+
+
+def test_rules_answer_where_nothing_can_be_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    rules = tmp_path / "rules.lp"
+    rules.write_text(REACHED)
+    assert solver.solve([rules], TOUCHES) == solver.solve([rules], program(TOUCHES))
+
+
+def test_a_remark_names_the_place_in_the_file(tmp_path: Path) -> None:
+    rules = tmp_path / "rules.lp"
+    for fault in ("named(A / 0) :- touching(_, _, A, _).", "named(A) :- touching(_, _, B, _)."):
+        rules.write_text(f"{REACHED}{fault}\n")
+        for _ in range(2):
+            with pytest.raises(RuleError, match=r"rules\.lp:11:"):
+                solver.solve([rules], TOUCHES)
 
 
 def test_rules_that_change_are_read_anew_however_often_they_were_asked(tmp_path: Path) -> None:
     rules = tmp_path / "rules.lp"
     rules.write_text(REACHED)
-    for _ in range(solver.OFTEN + 2):
-        before = solver.solve([rules], TOUCHES)
+    before = solver.solve([rules], TOUCHES)
     rules.write_text(REACHED.replace("nobody_sits", "no_one_is_seated"))
     after = solver.solve([rules], TOUCHES)
     assert before.of("named") != after.of("named")
