@@ -185,6 +185,7 @@ def owner_of(place: str) -> Any:
 
 def command(folder: str, spawned_s: float) -> dict[str, Any]:
     """Be ``capar observe FOLDER`` in a process that began then, and say what took how long."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as `capar` itself sets it, before numpy
     clock = Clock()
     install(clock)
     started = now()
