@@ -95,6 +95,73 @@ def write_trc(path: Path) -> Path:
     return path
 
 
+def write_trc_spaces(path: Path) -> Path:
+    """The same with runs of spaces, as some tools write it."""
+    lines = write_trc(path).read_text().splitlines()
+    rows = ["  ".join(each.split()) for each in lines]
+    path.write_text("\n".join([*rows[:5], "", *rows[5:]]) + "\n")
+    return path
+
+
+def write_motive(path: Path, *, order: str = "", bone: bool = False) -> Path:
+    """A rigid body of Motive, its axes those of the file; Euler angles if an order is given."""
+    angles = TURNS.as_euler(order, degrees=True) if order else TURNS.as_quat()
+    axes = order or "XYZW"
+    columns = [("Rotation", each) for each in axes] + [("Position", each) for each in "XYZ"]
+    kind, name = ("Bone", "Ann:RHand") if bone else ("Rigid Body", "hand")
+    head = {
+        "Format Version": "1.23", "Take Name": "m", "Export Frame Rate": f"{RATE:f}",
+        "Capture Start Time": "2025-03-01 09.30.00.250 PM", "Total Exported Frames": FRAMES,
+        "Rotation Type": order or "Quaternion", "Length Units": "Millimeters",
+        "Coordinate Space": "Global",
+    }  # fmt: skip
+    lines = [",".join(f"{k},{v}" for k, v in head.items()), ""]
+    for cells in ([kind] * len(columns), [name] * len(columns), ['"7F:A"'] * len(columns)):
+        lines.append(",".join(["", "", *cells]))
+    lines.append(",".join(["", "", *(what for what, _ in columns)]))
+    lines.append(",".join(["Frame", "Time (Seconds)", *(axis for _, axis in columns)]))
+    for n, (t, p, a) in enumerate(zip(TIMES, PLACES, angles, strict=True)):
+        lines.append(",".join([str(n), *(f"{v:.9f}" for v in (t, *a, *p * 1000.0))]))
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def write_nexus(path: Path) -> Path:
+    """Trajectories of Nexus; the frames begin at 31."""
+    rows = [
+        ",".join([str(n + 31), "0", *(f"{v * 1000:.6f}" for v in each.ravel())])
+        for n, each in enumerate(markers())
+    ]
+    head = [
+        "Trajectories", f"{RATE:g}", ",," + ",,,".join(NAMES) + ",,",
+        "Frame,Sub Frame" + ",X,Y,Z" * 4, "," + ",mm" * 12,
+    ]  # fmt: skip
+    path.write_text("\r\n".join([*head, *rows]) + "\r\n")
+    return path
+
+
+def write_segments(path: Path, *, rotations: str = "helical", unit: str = "deg") -> Path:
+    """A segment of Nexus, with a section that is not read before it."""
+    turn = {
+        "helical": TURNS.as_rotvec(),
+        "euler_xyz": TURNS.as_euler("XYZ"),
+        "quaternion": TURNS.as_quat(),
+    }[rotations]
+    turn = np.degrees(turn) if unit == "deg" else turn
+    axes = [*("RX", "RY", "RZ", "RW")[: turn.shape[1]], "TX", "TY", "TZ"]
+    head = [
+        "Devices", "1000", ",,Plate", "Frame,Sub Frame,Fx", ",,N", "1,0,3.5", "1,1,3.5", "",
+        "Segments", f"{RATE:g}", ",,hand:hand" + "," * (len(axes) - 1),
+        ",".join(["Frame", "Sub Frame", *axes]), "," + f",{unit}" * (len(axes) - 3) + ",mm" * 3,
+    ]  # fmt: skip
+    rows = [
+        ",".join([str(n + 1), "0", *(f"{v:.9f}" for v in (*a, *p * 1000.0))])
+        for n, (a, p) in enumerate(zip(turn, PLACES, strict=True))
+    ]
+    path.write_text("\n".join([*head, *rows]) + "\n")
+    return path
+
+
 def write_npz(path: Path) -> Path:
     np.savez_compressed(
         path, names=np.array(["hand"]), p=PLACES[:, None], q=TURNS.as_quat()[:, None], fps=RATE
@@ -153,14 +220,14 @@ def write_bag(path: Path, *, since_s: int = 1000) -> Path:
     return path
 
 
-def write_bag2(path: Path) -> Path:
+def write_bag2(path: Path, *, storage: str = "SQLITE3") -> Path:
     """A ROS 2 bag of transforms, child frame ``hand``."""
-    from rosbags.rosbag2 import Writer
+    from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)
     kinds = store.types
-    with Writer(path, version=8) as writer:
+    with Writer(path, version=8, storage_plugin=StoragePlugin[storage]) as writer:
         line = writer.add_connection("/tf", "tf2_msgs/msg/TFMessage", typestore=store)
         for n, (t, p, q) in enumerate(zip(TIMES, PLACES, TURNS.as_quat(), strict=True)):
             stamp = kinds["builtin_interfaces/msg/Time"](sec=1000, nanosec=round(t * 1e9))
@@ -184,6 +251,10 @@ WRITERS: dict[str, tuple[str, Callable[[Path], Path]]] = {
     "tsv": ("m.tsv", write_tsv),
     "tsv6d": ("m6.tsv", write_tsv_6d),
     "trc": ("m.trc", write_trc),
+    "trc spaces": ("m2.trc", write_trc_spaces),
+    "motive": ("motive.csv", write_motive),
+    "nexus": ("nexus.csv", write_nexus),
+    "segments": ("segments.csv", write_segments),
     "csv": ("m.csv", write_csv),
     "npz": ("m.npz", write_npz),
     "json": ("m.json", write_json),

@@ -388,13 +388,14 @@ def body_names(names: Iterable[str]) -> dict[str, BodyName]:
     """What each name means that is of a body; others are left out.
 
     The convention that knows most names has its say first, then the next, as long as they know
-    ``LEAST_NAMES``; what none knows is known by its words, if they tell a part of the body.
+    ``LEAST_NAMES`` or the markers of a hand; what none knows is known by its words, if they tell a
+    part of the body.
     """
     left = spellings(names)
     least = max(LEAST_NAMES, FOLLOWED_SHARE * len(left))
     out: dict[str, BodyName] = {}
     while found := max((_known(each, left) for each in conventions().values()), key=len):
-        if len(found) < least:
+        if len(found) < least and not _has_hand(found):
             break
         out |= found
         left = {name: each for name, each in left.items() if name not in found}
@@ -413,6 +414,54 @@ def body_names(names: Iterable[str]) -> dict[str, BodyName]:
             if each.side != "none" or each.part in {"head", "pelvis"}
         }
     return out | worded
+
+
+def _has_hand(found: Mapping[str, BodyName]) -> bool:
+    """Whether three of the names are places of one hand and its wrist."""
+    places = Counter(
+        each.side
+        for each in found.values()
+        if each.part == "hand" or without_side(each.place).startswith("wrist")
+    )
+    return any(places[side] >= 3 for side in SIDES)
+
+
+ABOVE = {
+    "fingers": "hand", "hand": "forearm", "forearm": "upper_arm", "upper_arm": "trunk",
+    "toes": "foot", "foot": "shank", "shank": "thigh", "thigh": "pelvis",
+    "head": "trunk", "trunk": "pelvis",
+}  # fmt: skip
+"""The part that each place or part of the body hangs on."""
+
+
+def parents_by_names(names: Iterable[str]) -> dict[str, str]:
+    """Parents in skeletons of which a file states none, by what the names tell.
+
+    Names of a subject, ``SUBJECT:BONE``, are one skeleton if there are several. What hangs on no
+    other bone by its name hangs on the first such one.
+    """
+    subjects: dict[str, list[str]] = {}
+    for name in names:
+        if ":" in name:
+            subjects.setdefault(name.partition(":")[0], []).append(name)
+    out: dict[str, str] = {}
+    for bones in subjects.values():
+        known = body_names(bones)
+        above = {name: parent for name in known if (parent := _above(known, known[name]))}
+        root, *others = [name for name in bones if name not in above]
+        out |= above | dict.fromkeys(others, root)
+    return out
+
+
+def _above(bones: Mapping[str, BodyName], own: BodyName) -> str:
+    """The bone of its side, or of no side, that a bone hangs on by its name; empty if none."""
+    wanted = ABOVE.get(without_side(own.place), ABOVE.get(own.part))
+    for name, each in bones.items():
+        place = without_side(each.place)
+        beside = ABOVE.get(place) == wanted  # toes, which are of the foot, hang on the rest of it
+        if each.side in {own.side, "none"} and wanted in {place, each.part} and not beside:
+            return name
+    return ""
 
 
 def _known(convention: Convention, spelled: Spelled) -> dict[str, BodyName]:

@@ -12,10 +12,12 @@ from extractors.readers.formats import (
     c3d,
     csv_table,
     json_trajectory,
+    motive,
     npz,
     qualisys,
     rosbag,
     trc,
+    vicon,
 )
 from extractors.readers.recording import Recording
 
@@ -40,6 +42,14 @@ READERS = (
     Reader("rosbag", "ROS 1 and 2 bags: poses, tf, rigid bodies", rosbag.recognises, rosbag.read),
     Reader("qualisys", "Qualisys TSV: markers or 6D", qualisys.recognises, qualisys.read),
     Reader("trc", "TRC: markers", trc.recognises, trc.read),
+    Reader("motive", "Motive CSV: bodies, bones, markers", motive.recognises, motive.read),
+    Reader(
+        "vicon",
+        "Vicon CSV: trajectories, segments, objects",
+        vicon.recognises,
+        vicon.read,
+        vicon.OPTIONS,
+    ),
     Reader("npz", "NPZ: arrays that capture.toml maps", npz.recognises, npz.read, npz.OPTIONS),
     Reader(
         "json",

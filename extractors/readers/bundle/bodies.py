@@ -44,14 +44,19 @@ class Fit:
 def arrangement(body: str, markers: Mapping[str, Float[np.ndarray, "frames 3"]]) -> Cluster:
     """The mean arrangement over the frames in which most markers are seen.
 
-    Its origin is the markers' centre; its axes are the world's in the first such frame.
+    Its origin is the markers' centre; its axes are the world's in the first such frame. A single
+    marker is a body whose axes stay the world's.
 
     Raises:
-        CaptureError: Fewer than three markers, on one line, or never three seen at once.
+        CaptureError: No or two markers, some on one line, or never three seen at once.
     """
     names = tuple(markers)
+    if len(names) == 1:
+        return Cluster(names, np.zeros((1, 3)))
     if len(names) < 3:
-        raise CaptureError(f"body {body!r} has markers {list(names)}; a rigid body needs three")
+        raise CaptureError(
+            f"body {body!r} has markers {list(names)}; a rigid body needs three, and a point one"
+        )
     points = np.stack([markers[each] for each in names], axis=1)
     seen = ~np.isnan(points).any(axis=2)
     whole = np.flatnonzero(seen.all(axis=1))
@@ -75,12 +80,17 @@ def arrangement(body: str, markers: Mapping[str, Float[np.ndarray, "frames 3"]])
 
 
 def fit_cluster(cluster: Cluster, points: Float[np.ndarray, "frames markers 3"]) -> Fit:
-    """The pose of a cluster in every frame in which three of its markers are seen.
+    """The pose of a cluster in every frame in which three of its markers, or its only, are seen.
 
     They are least squares over many frames at once (Kabsch).
     """
     frames = len(points)
     fit = Fit(np.full((frames, 3), np.nan), np.full((frames, 4), np.nan), np.full(frames, np.nan))
+    if len(cluster.names) == 1:
+        seen = ~np.isnan(points[:, 0]).any(axis=1)
+        fit.positions[seen] = points[seen, 0] - cluster.local[0]
+        fit.orientations[seen], fit.residuals[seen] = [1.0, 0.0, 0.0, 0.0], 0.0
+        return fit
     patterns, which = np.unique(~np.isnan(points).any(axis=2), axis=0, return_inverse=True)
     for index, seen in enumerate(patterns):
         rows, local = np.flatnonzero(which.reshape(-1) == index), cluster.local[seen]

@@ -38,7 +38,8 @@ RIDING_M, SEGMENT_M = 0.020, 0.3
 no more than the latter [m]."""
 
 FIXED_M = 0.02  # What never goes further than this from where it usually is does not move [m].
-LEAST_PARTS = 3  # A body is in a file if so many of its parts have a joint or marker.
+LEAST_PARTS = 3
+"""A body is in a file if so many of its parts have a joint or marker, or a hand has a marker."""
 
 STATURE_M = (1.0, 2.2)  # How tall people are, from children of four years on [m].
 USUAL_STATURE_M = 1.7  # How tall an adult is of whom nothing is known [m].
@@ -138,7 +139,11 @@ def contents(recording: Recording) -> Contents:
     metres = {name: each * (recording.unit_m or 1.0) for name, each in points.items()}
     found = sided(body_names([*recording.bodies, *recording.markers]), metres)
     clocks = {len(each) for each in points.values()}
-    if len({each.part for each in found.values()}) < LEAST_PARTS or len(clocks) != 1:
+    hand = any(
+        e.part == "hand" and e.side != "none" for n, e in found.items() if n in recording.markers
+    )
+    few = len({each.part for each in found.values()}) < LEAST_PARTS
+    if (few and not hand) or len(clocks) != 1:
         return Contents(recording, {})
     across, beside = rightwards(points, found), None
     across = across[~np.isnan(across).any(axis=1)]
@@ -208,6 +213,8 @@ def _marker_sets(markers: Points) -> dict[str, list[str]]:
                 while not all(each.startswith(shared) for each in members):
                     shared = shared[:-1]
                 shared = shared.rstrip(":_. 0123456789")
+                subject, _, rest = shared.partition(":")
+                shared = subject if len(rest) == 1 else shared  # ``Box`` of ``Box:B1``
                 name = shared if len(shared) > 2 else start if stem else "markers_1"
                 numbered = (f"{name.removesuffix('_1')}_{n}" for n in range(2, len(sets) + 3))
                 free = (each for each in (name, *numbered) if each not in sets)
@@ -466,6 +473,8 @@ class LimbSensor:
 def limb_sensors(points: Points, names: Mapping[str, BodyName]) -> Iterator[LimbSensor]:
     """The sensors of a body's hands, feet and head that three or more markers carry.
 
+    A hand that has fewer is carried by the one of its own markers that is seen most often.
+
     Args:
         points: Markers in the world: metres, z up.
         names: What their names mean.
@@ -478,6 +487,10 @@ def limb_sensors(points: Points, names: Mapping[str, BodyName]) -> Iterator[Limb
                 if limb != "head":
                     of_side = {n: each for n, each in own.items() if each.side == side}
                 found = _carriers(points, of_side, stages)
+                own_hand = [n for n, e in of_side.items() if side in SIDES and e.part == "hand"]
+                if found is None and limb == "hand" and own_hand:
+                    best = max(own_hand, key=lambda n: int((~np.isnan(points[n])).sum()))
+                    found = (best,), (best,), None
                 if found is None:
                     continue
                 gaze = None

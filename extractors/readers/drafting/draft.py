@@ -91,7 +91,7 @@ def draft(recordings: Sequence[Recording], folder: Path, name: str) -> str:
         paths[key] = Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
         recording = each.recording
         points = world_points(recording, recording.unit_m or unit_m, recording.up or up)
-        markers = {name: points[name] for name in recording.markers}
+        markers = {name: points[name] for name in recording.markers if not _owned(recording, name)}
         body = {name: known for name, known in each.body.items() if name in markers}
         sensors = tuple(limb_sensors(markers, body))
         rest = others(markers, body if sensors else {})
@@ -133,6 +133,12 @@ def draft(recordings: Sequence[Recording], folder: Path, name: str) -> str:
             '# markers = ["...", "...", "..."]',
         ]
     return "\n".join(lines) + "\n"
+
+
+def _owned(recording: Recording, marker: str) -> bool:
+    """Whether a marker is of a body or skeleton that is in the file too: ``Mug:Marker1``."""
+    owner, colon, _ = marker.partition(":")
+    return bool(colon) and any(each.partition(":")[0] == owner for each in recording.bodies)
 
 
 def _frame(held: Sequence[Contents]) -> tuple[float, str, list[str]]:
@@ -191,7 +197,8 @@ def _bodies(file: _File) -> Iterator[_Body]:
     """Bodies and marker sets; of a skeleton only its end-effectors, for joints are no objects."""
     recording = file.recording
     kinds = end_effectors(recording) if recording.parents else {}
-    names = list(kinds or ({} if recording.parents else recording.bodies))
+    joints = {*recording.parents, *recording.parents.values()}
+    names = [name for name in recording.bodies if name in kinds or name not in joints]
     for name in names or list(recording.bodies)[:1]:
         side = file.body[name].side if name in file.body else "none"
         yield _Body(
@@ -315,6 +322,8 @@ def _account_lines(file: _File) -> list[str]:
             groups.setdefault(f"the body, {part}:", []).append(name)
     for name, part in rest.riding.items():
         groups.setdefault(f"the body, keeping its distance to the {part}:", []).append(name)
+    owned = [name for name in file.recording.markers if _owned(file.recording, name)]
+    groups["of bodies that are in the file too:"] = owned
     groups["never seen:"] = [*rest.unseen]
     groups["computed quantities, no markers:"] = [*rest.computed]
     groups["left out, as no body and no two others keep their distance:"] = [*rest.loose]

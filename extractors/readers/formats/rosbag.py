@@ -19,11 +19,12 @@ _LOST = (float("nan"),) * 7
 
 
 def recognises(path: Path, head: bytes) -> bool:
-    """Whether it is a ROS 1 bag, a folder with a ROS 2 bag, or a file of such a folder."""
+    """Whether it is a ROS 1 bag, a folder with a ROS 2 bag, or a file of one, with it or alone."""
     if path.is_dir():
         return (path / "metadata.yaml").is_file()
     storage = head.startswith((b"\x89MCAP0\r\n", b"SQLite format 3\0"))
-    return head.startswith(b"#ROSBAG V2") or (storage and _folder(path).is_dir())
+    alone = path.suffix in {".mcap", ".db3"}  # the library goes by it
+    return head.startswith(b"#ROSBAG V2") or (storage and (alone or _folder(path).is_dir()))
 
 
 def _folder(path: Path) -> Path:

@@ -19,8 +19,9 @@ def recognises(path: Path, head: bytes) -> bool:
 def read(path: Path, options: Any) -> Recording:
     """The markers of a TRC file; empty cells and NaN are missing points.
 
-    Cells are separated by tabs or by commas; between tabs, numbers may have decimal commas. A
-    number of frames or a rate in the header that the rows contradict gives a notice.
+    Cells are separated by tabs, by commas or by runs of spaces; between tabs, numbers may have
+    decimal commas. A number of frames or a rate in the header that the rows contradict gives a
+    notice.
 
     Raises:
         FileError: The header is incomplete or names a marker twice, or rows are missing.
@@ -28,7 +29,7 @@ def read(path: Path, options: Any) -> Recording:
     lines = read_text(path).splitlines()
     if len(lines) < 6:
         raise FileError(path, f"has {len(lines)} lines; a TRC has five of header, then rows.")
-    delimiter = "\t" if "\t" in lines[3] else ","
+    delimiter = next((each for each in "\t," if each in lines[3]), None)
     if delimiter == "\t" and not any("." in line for line in lines[5:8]):
         lines[2:3] = [lines[2].replace(",", ".")]
         lines[5:] = [line.replace(",", ".") for line in lines[5:]]

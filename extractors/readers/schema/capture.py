@@ -205,7 +205,9 @@ class Tracked(Traits):
         None,
         apart="markers",
     )
-    markers: list[str] | None = key("Three or more markers that keep their distances.", None)
+    markers: list[str] | None = key(
+        "Three or more markers that keep their distances; or one, a point that does not turn.", None
+    )
     residual_m: float = key(
         "Largest median distance of the markers from their rigid places.",
         0.010,
@@ -436,6 +438,11 @@ class MotionFile(Entry):
     )
     order: Order | None = key("CSV: order of the quaternions' columns; xyzw.", None)
     delimiter: str | None = key("CSV: what separates cells.", None)
+    rotations: Literal["helical", "euler_xyz"] | None = key(
+        "Vicon CSV: what RX, RY and RZ are: a vector along the axis, as long as the angle, or "
+        "angles about axes that turn with the body; helical.",
+        None,
+    )
     folder: str | None = key("JSON in a tar archive: the folder in it.", None)
     time_unit_s: Positive | None = key(
         "JSON: seconds per unit of the time stamps; 0.001.", None, unit="s"

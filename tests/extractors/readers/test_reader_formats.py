@@ -58,7 +58,7 @@ def test_a_file_cut_short_is_refused(kind: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("pack", [gzip.compress, lzma.compress])
-@pytest.mark.parametrize("kind", ["bvh", "csv", "tsv", "trc", "json"])
+@pytest.mark.parametrize("kind", ["bvh", "csv", "tsv", "trc", "motive", "nexus", "json"])
 def test_text_is_read_through_gzip_and_xz(kind: str, pack, tmp_path: Path) -> None:
     path = written(kind, tmp_path)
     plain = read_recording(path)
@@ -68,10 +68,17 @@ def test_text_is_read_through_gzip_and_xz(kind: str, pack, tmp_path: Path) -> No
     assert np.array_equal(packed.times, plain.times)
 
 
-def test_a_ros2_bag_is_read_from_its_folder(tmp_path: Path) -> None:
-    path = samples.write_bag2(tmp_path / "bag2")
-    body = read_recording(path).bodies["hand"]
-    assert np.allclose(body.positions, samples.PLACES)
+@pytest.mark.parametrize(("storage", "suffix"), [("SQLITE3", "db3"), ("MCAP", "mcap")])
+def test_a_ros2_bag_is_read_from_its_folder_and_from_its_file(
+    storage: str, suffix: str, tmp_path: Path
+) -> None:
+    path = samples.write_bag2(tmp_path / "bag2", storage=storage)
+    (file,) = path.glob(f"*.{suffix}")
+    alone = tmp_path / f"alone.{suffix}"
+    alone.write_bytes(file.read_bytes())
+    for place in (path, file, alone):
+        body = read_recording(place).bodies["hand"]
+        assert np.allclose(body.positions, samples.PLACES)
 
 
 def test_missing_points_are_lost_frames(tmp_path: Path) -> None:
