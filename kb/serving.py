@@ -509,10 +509,13 @@ class ActionaryServer(uvicorn.Server):
         await send({"type": "http.response.body", "body": body})
 
     def _check_head(self, request: Request) -> None:
-        """Refuse a foreign host's name, or a body without end."""
+        """Refuse a foreign host's name, a page of another site, or a body without end."""
         length = request.headers.get("content-length")
         if self.loopback and not _names_loopback(request.headers.get("host", "")):
             raise UnreadError(403, "ask for it by the name localhost or a loopback address")
+        origin = request.headers.get("origin")
+        if self.loopback and origin is not None and not _names_loopback(origin.partition("://")[2]):
+            raise UnreadError(403, f"pages of {origin} may not ask this server")
         if request.method == "POST" and (length is None or not length.isdecimal()):
             raise UnreadError(411, "say how long the body is: Content-Length")
         if length is not None and int(length) > LARGEST_BODY:

@@ -358,9 +358,17 @@ def test_the_server_answers_on_loopback_and_to_its_own_name_alone(served: str) -
         assert json.load(reply)[0]["observation"] == "DrinkFromMug"
     with urllib.request.urlopen(served) as reply:
         assert b"/questions/segments" in reply.read()
-    foreign = urllib.request.Request(f"{served}questions", headers={"Host": "evil.example"})
-    with pytest.raises(urllib.error.HTTPError, match="403"):
-        urllib.request.urlopen(foreign)
+    for stranger in (
+        {"Host": "evil.example"},
+        {"Origin": "https://evil.example"},
+        {"Origin": "null"},
+    ):
+        foreign = urllib.request.Request(f"{served}questions", headers=stranger)
+        with pytest.raises(urllib.error.HTTPError, match="403"):
+            urllib.request.urlopen(foreign)
+    own = urllib.request.Request(f"{served}questions", headers={"Origin": served.rstrip("/")})
+    with urllib.request.urlopen(own) as reply:
+        assert reply.status == 200
     head = urllib.request.Request(f"{served}openapi.json", method="HEAD")
     with urllib.request.urlopen(head) as reply:
         assert (reply.read(), int(reply.headers["Content-Length"]) > 0) == (b"", True)
