@@ -28,6 +28,7 @@ check: $(VENV)/developing  ## Style, types and the import contract, as the tests
 	$(VENV)/bin/lint-imports
 
 BENCHMARKS := $(filter-out benchmarks/scene.py,$(wildcard benchmarks/*.py))
+bench: export PYTHONDONTWRITEBYTECODE =
 bench: $(VENV)/developing  ## Ratios side by side, half an hour on two quiet cores; NAME.py --help has larger sizes.
 	for each in $(BENCHMARKS); do echo; echo "== $$each"; $(VENV)/bin/python $$each || exit 1; done
 

@@ -20,6 +20,8 @@ ADDITIONS = "total = 0\nfor each in range(10_000_000):\n    total += each"
 REFERENCE_S = 0.7
 """What this script takes on the machine to which figures of others are scaled [s]."""
 
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # commands are timed with bytecode, as installed
+
 
 def recordings() -> bool:
     """Whether the recordings of others are there; without, it is said that they are not.

@@ -2,7 +2,6 @@
 
 import gzip
 import hashlib
-import io
 import lzma
 import zipfile
 import zlib
@@ -138,7 +137,7 @@ def read_rows(
     if not rows:
         raise FileError(path, "has a header and no rows of numbers.", "Export it again.")
     try:
-        table = np.loadtxt(io.StringIO("\n".join(rows)), delimiter=delimiter, ndmin=2)
+        table = np.loadtxt(rows, delimiter=delimiter, ndmin=2)
     except ValueError:
         table = np.empty((0, 0))
     if table.shape == (len(rows), columns):
