@@ -1,22 +1,32 @@
-"""Bodies fitted to recordings that others made: what is left of residuals, and how they stand.
+"""Bodies fitted to recordings that others made, and the recordings performed by other bodies.
 
-``python benchmarks/recorded_bodies.py [WORD ...]``: recordings whose names hold one of these words,
-``all``, or a box lift, a walk and a reach. Recordings without a capture of their own in
-``examples/`` are drafted first, as ``capar new-capture`` does. Without the recordings nothing is
-done.
+``python benchmarks/recorded_bodies.py [WORD ...]``: what is left of residuals, and how bodies
+stand, of recordings whose names hold one of these words, of ``all``, or of a box lift, a walk and a
+reach. Recordings without a capture of their own in ``examples/`` are drafted first, as ``capar
+new-capture`` does. With ``--regenerate`` all, or those of the words, that have an ``assumed.toml``
+in ``examples/`` are performed by a woman and a child. Without the recordings nothing is done.
 """
 
+import argparse
 import os
-import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import scene
+from natural import sheet, staged, without_sensors
 
-from capar.body.body_fitting import fit_body, ground
+from capar.body.body_fitting import fit_body, ground, whole_body
 from capar.body.sensor_fitting import Fit
+from capar.model.errors import CaparError
+from capar.pipelines.round_trips import body, observed_source, round_trip
+from capar.regeneration.captures import read_completion
+from capar.regeneration.motion import Motion
+from capar.regeneration.quality import failures
+from capar.regeneration.scenes import read_scene
+from capar.views.viewer.stage import stage, with_mannequin
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.drafting.draft import draft
 from extractors.readers.registry import read_recording
@@ -29,6 +39,8 @@ REACHES = ("ReachBackLow01", "ReachForwardHigh01", "ReachForwardLow01", "ReachFo
            "ReachRight30MediumMid01")  # fmt: skip
 FILES = ("cmu_walk.bvh", "std_walking2_markers.trc", "walk_free_01.trc", "sgi_int.c3d",
          "test3.bvh", "racing.c3d", "propulsion.c3d")  # fmt: skip
+
+AGENTS = ("woman", "child")
 
 FAR_MM = 30.0
 """Distances larger than this are counted, as ``capar fit`` reports them [mm]."""
@@ -75,11 +87,68 @@ def row(name: str, place: str) -> str:
     )
 
 
+def performances() -> Iterator[tuple[str, str, Path]]:
+    """The name and the place of each recording that is performed, and what is assumed of it."""
+    for assumed in sorted(EXAMPLES.glob("*/*assumed.toml")):
+        name = assumed.name.removesuffix("assumed.toml").rstrip(".")
+        place = assumed.with_name(f"{name or 'capture'}.toml")
+        if place.exists():
+            yield name or assumed.parent.name, str(place), assumed
+        else:  # a take
+            hands = "largebox_hands.toml" if "largebox" in name else "hands.toml"
+            yield name, f"{assumed.with_name(hands)}:{name}", assumed
+
+
+def performed(place: str, assumed: Path, agent: str) -> tuple[str, Motion | None]:
+    """What comes of a recording that a body performs; a child's scene may be its own."""
+    began = time.process_time()
+    own = assumed.with_name(assumed.name.replace("assumed", f"{agent}.scene"))
+    try:
+        source = observed_source(place, assumed)
+        where = read_scene(own, source.scene) if own.exists() else source.scene
+        trip = round_trip(source, agent, body(agent, source), 0, where)
+    except CaparError as error:
+        return f"refused: {error}", None
+    if trip.quality is None:
+        return f"refused: {trip.refused}", None
+    par = "same PAR" if trip.same_par else "another PAR"
+    said = failures(trip.quality) or "every gate"
+    return f"{said}; {par}, {time.process_time() - began:.0f} s", trip.motion
+
+
+def pictured(place: str, assumed: Path, motions: list[Motion], path: Path) -> None:
+    """Draw a recording and what was made of it, when a hand takes hold, between, and at the end."""
+    source = motions[0].plan.source
+    capture, times = read_capture(place), source.times
+    first = min((hold.first for hold in source.holds), default=0)
+    moments = times[[first, (first + len(times) - 1) // 2, len(times) - 1]]
+    shown = stage(capture)
+    if whole_body(place):
+        shown = without_sensors(with_mannequin(shown, fit_body(place, capture)))
+    rows = [(shown, moments + read_completion(assumed).from_s)]
+    sheet([*rows, *((staged(motion), moments) for motion in motions)], path)
+
+
 def main() -> None:
     """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("words", nargs="*", metavar="WORD", help="of the names of recordings")
+    parser.add_argument("--regenerate", action="store_true", help="perform them by other bodies")
+    parser.add_argument("--pictures", type=Path, metavar="FOLDER", help="draw what is performed")
+    asked = parser.parse_args()
     if not scene.recordings():
         return
-    words = sys.argv[1:] or ["box lift", "walk.bvh", "ReachForwardHigh"]
+    if asked.regenerate:
+        print(f"| recording | {' | '.join(AGENTS)} |\n|---|---|---|")
+        for name, place, assumed in performances():
+            if not asked.words or any(word in name for word in asked.words):
+                made = [performed(place, assumed, agent) for agent in AGENTS]
+                print(f"| {name} | {' | '.join(said for said, _ in made)} |", flush=True)
+                motions = [motion for _, motion in made if motion]
+                if asked.pictures and motions:
+                    pictured(place, assumed, motions, asked.pictures / f"{name}.png")
+        return
+    words = asked.words or ["box lift", "walk.bvh", "ReachForwardHigh"]
     print("| recording | followed | median [mm] | 95 % [mm] | over 30 mm | worst of medians [mm] "
           "| sole above floor [mm] | stature [m] | time / motion |")  # fmt: skip
     print("|---|---|---|---|---|---|---|---|---|")

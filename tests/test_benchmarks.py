@@ -18,6 +18,7 @@ SMALLEST = {
     "live": "--events 10 --minutes 0.02 --faces 500",
     "live_takes": "slide_0.1mm --rounds 1",
     "moved_pivots": "",
+    "natural": "touch",
     "observing": "--minutes 0.2 --sensors 5 --faces 500",
     "questions": "--copies 2 --first 1",
     "reasoning": "--minutes 0.2 --runs 1",

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import trimesh
 from jaxtyping import Float
-from scipy.spatial import KDTree
+from scipy.spatial import ConvexHull, KDTree
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human, body_spec
@@ -67,6 +67,12 @@ class Surroundings:
             if not scene.stops(part, name)
         }
         self.hollow = {n: _surface_points(t.shape) for n, t in scene.things.items()}
+        self.planes = {}  # normals and offsets of the faces of hulls, each in its geom's frame
+        for geom in things:
+            mesh = self.model.mesh(int(self.model.geom_dataid[geom]))
+            first = int(mesh.vertadr[0])
+            vertices = self.model.mesh_vert[first : first + int(mesh.vertnum[0])]
+            self.planes[geom] = ConvexHull(vertices).equations
 
     def pose(
         self, posture: Float[np.ndarray, "posture"], things: Mapping[str, RigidTransform]
@@ -115,7 +121,7 @@ class Surroundings:
         ends = np.zeros(6)
         found = mujoco.mj_geomDistance(self.model, self.data, geom, self.geoms[name], NEAR_M, ends)
         spot, normal = ends[:3], (ends[3:] - ends[:3]) * np.sign(found)
-        if found < 0.0 and self._apart(geom, name, NEAR_M) >= found:
+        if found < 0.0 and self._apart(geom, name, HEAD_CLEAR_M) >= found:
             spot, normal = self._nearest(geom, name)
         moves = np.empty((3, self.model.nv))
         mujoco.mj_jac(self.model, self.data, moves, None, spot, self.model.geom_bodyid[geom])
@@ -128,6 +134,9 @@ class Surroundings:
         for first, second in itertools.combinations(sorted(self.geoms), 2):
             if frozenset((first, second)) not in joined:
                 found = self._distance(self.geoms[first], self.geoms[second])
+                if found < 0.0:  # of hulls: one may be in the other, which is hollow
+                    apart = self._apart(self.geoms[first], second, NEAR_M)
+                    found = max(found, apart, self._apart(self.geoms[second], first, NEAR_M))
                 if found < NEAR_M:
                     out.append(Pair(found, first, second))
         return out
@@ -143,18 +152,23 @@ class Surroundings:
     def _apart(self, geom: int, name: str, most_m: float) -> float:
         """How far a hollow object's surface is from a part, negative where it is inside [m].
 
-        Without end where the object is not hollow.
+        Or from another object's hull. Minus infinity where the object is not hollow.
         """
         if self.hollow[name] is None:
             return -np.inf
         points = self._surface(geom, name, most_m)
-        return float(_depths(points, self.model, geom).min()) if len(points) else most_m
+        if not len(points):
+            return most_m
+        if geom in self.planes:
+            normals, offsets = self.planes[geom][:, :3], self.planes[geom][:, 3]
+            return float((points @ normals.T + offsets).max(axis=1).min())
+        return float(_depths(points, self.model, geom).min())
 
     def _nearest(
         self, geom: int, name: str
     ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
         """The point of a hollow object's surface next to a part, and the way out to it [m, 1]."""
-        local = self._surface(geom, name, NEAR_M)
+        local = self._surface(geom, name, HEAD_CLEAR_M)
         point = local[int(_depths(local, self.model, geom).argmin())]
         steps = point + DIFFERENCE_M * np.concatenate([np.eye(3), -np.eye(3)])
         ahead, back = _depths(steps, self.model, geom).reshape(2, 3)
@@ -180,21 +194,6 @@ def things_apart(scene: Scene, names: tuple[str, str], human: Human) -> float:
     around.pose(human.posture(), {name: thing.pose for name, thing in scene.things.items()})
     found = (pair for pair in around.things_near() if {pair.part, pair.thing} == set(names))
     return min((pair.distance_m for pair in found), default=NEAR_M)
-
-
-def inner_gap(hollow: Shape, thing: Shape, seat: RigidTransform) -> float | None:
-    """How far an object is from the surface of a hollow one, negative where they cut [m].
-
-    Returns:
-        None where the first shape is not hollow.
-    """
-    surface = _surface_points(hollow)
-    if surface is None:
-        return None
-    hull = trimesh.convex.convex_hull(np.array(thing.vertices))
-    points = seat.inv().apply(surface.data)
-    ahead = points @ hull.face_normals.T
-    return float((ahead - (hull.face_normals * hull.triangles[:, 0]).sum(axis=1)).max(axis=1).min())
 
 
 def _depths(

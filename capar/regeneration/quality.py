@@ -12,7 +12,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from capar.body.human import ROOT_SIZE, Human
 from capar.body.recording import HAND_SEGMENTS
 from capar.model.par import Condition
-from capar.regeneration.collisions import NEAR_M, Pair, Surroundings, inner_gap
+from capar.regeneration.collisions import NEAR_M, Pair, Surroundings
 from capar.regeneration.forces import ForceKind, end_velocity, flight_faults
 from capar.regeneration.goals import scene_constraints
 from capar.regeneration.holds import FRICTION, SETTLED_M
@@ -237,18 +237,11 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], tuple[Measure, ...]]:
     object that its hand takes is reported apart, and so is what objects cut of each other as they
     stand at first, which is counted from there.
     """
-    plan, deepest, inside = motion.plan, [], set[frozenset[str]]()
+    plan, deepest = motion.plan, list[tuple[Pair, int]]()
     around = Surroundings(plan.human, plan.scene)
     around.pose(motion.postures[0], {name: path[0] for name, path in plan.things.items()})
     sunk = [pair for pair in around.things_near() if -SUNK_M <= pair.distance_m < 0.0]
     first_m = {frozenset((pair.part, pair.thing)): pair.distance_m for pair in sunk}
-    for load in plan.source.loads:  # in a hollow object, as far from its surface all the way
-        bearer, thing = (plan.scene.thing(name).shape for name in (load.bearer, load.thing))
-        seat = plan.things[load.bearer][load.first].inv() * plan.things[load.thing][load.first]
-        gap_m = inner_gap(bearer, thing, seat)
-        if gap_m is not None:
-            inside.add(frozenset((load.thing, load.bearer)))
-            deepest.append((Pair(gap_m, load.thing, load.bearer), load.first))
     things = {name: vectors(path) for name, path in plan.things.items()}
     span = LEAVING_S * plan.source.rate_hz
     nearest, thumbs = list[tuple[Pair, int]](), list[tuple[Pair, int]]()
@@ -270,9 +263,8 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], tuple[Measure, ...]]:
                 nearest.append((pair, frame))
         for pair in around.things_near():
             both = frozenset((pair.part, pair.thing))
-            if both not in inside:
-                by_m = pair.distance_m - first_m.get(both, 0.0)
-                deepest.append((replace(pair, distance_m=by_m), frame))
+            by_m = pair.distance_m - first_m.get(both, 0.0)
+            deepest.append((replace(pair, distance_m=by_m), frame))
     far = (Pair(np.inf, "", ""), -1)
     gates = [
         distance_gate("penetration", -1.0, min(deepest, default=far)),

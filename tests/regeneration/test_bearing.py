@@ -1,12 +1,14 @@
 """What stands on a held thing, or in it, goes along; whether it would slide or fall is told."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from recorded_actions import RATE_HZ, good_trip, recorded
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.virtual_scenes import Thing, box, cup
-from capar.regeneration.collisions import inner_gap
+from capar.regeneration.collisions import Surroundings
 from capar.regeneration.holds import FRICTION, Load, steadiness, with_loads
 from capar.regeneration.scenes import raised, resized, stack
 
@@ -74,9 +76,16 @@ def test_a_leaning_or_speeding_tray_is_measured_against_friction_and_support() -
 
 def test_a_thing_in_an_open_box_is_measured_against_its_walls() -> None:
     vessel, brick = cup(0.1, 0.1), box(0.05, 0.05, 0.05)
-    inside = inner_gap(vessel, brick, RigidTransform.from_translation([0.0, 0.0, 0.005]))
-    assert inside == pytest.approx(0.001, abs=1e-3)
-    through = inner_gap(vessel, brick, RigidTransform.from_translation([0.08, 0.0, 0.005]))
-    assert through is not None
-    assert through < -0.005
-    assert inner_gap(brick, brick, RigidTransform.identity()) is None
+    things = {n: Thing(n, s, (0.0, 0.0, 0.0)) for n, s in (("vessel", vessel), ("brick", brick))}
+    source = recorded("carry_tray")
+    around = Surroundings(source.human, replace(source.scene, things=things))
+
+    def apart_m(x: float) -> float:
+        seat = RigidTransform.from_translation([x, 0.0, 0.005])
+        around.pose(source.human.posture(), {"vessel": RigidTransform.identity(), "brick": seat})
+        (pair,) = around.things_near()
+        return pair.distance_m
+
+    assert apart_m(0.0) == pytest.approx(0.001, abs=1e-3)
+    assert apart_m(0.08) < -0.005
+    assert apart_m(0.16) == pytest.approx(0.035, abs=1e-3)
