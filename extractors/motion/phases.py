@@ -58,9 +58,9 @@ def turns_of_height(
 ) -> tuple[int, ...]:
     """Frames at which a body that rose steeply by a real way begins to sink by one.
 
-    They lie in the middle of the longest level part between the two, or, where there is none, in
-    the middle between the end of the rise and the beginning of the sink. A pause in the air changes
-    nothing, but that where nothing else lies between it needs no turn beside it; where the body
+    They lie in the middle of the longest level part between the two, of those before its first
+    pause if there are any; or, where there is none, in the middle between the end of the rise and
+    the beginning of the sink, which a pause in the air alone makes needless. Where the body
     comes to touch another in between, its way has ended there. A sink that such a frame begins ends
     at the next one, if the body then rises again.
 
@@ -86,14 +86,15 @@ def turns_of_height(
 
 
 def _turn(rise: Phase, between: Sequence[Phase], sink: Phase, middles: Places) -> list[int]:
-    level = [phase for phase in between if phase.kind == LEVEL]
+    parts = [rise, *between, sink]
+    rests = [row for row, (one, two) in enumerate(pairwise(parts), 1) if one.last != two.first]
+    first = parts[: rests[0]] if rests else parts
+    level = [phase for phase in first if phase.kind == LEVEL]
+    level = level or [phase for phase in between if phase.kind == LEVEL]
     if level:
         longest = max(level, key=lambda phase: _way(phase, middles))
         return [(longest.first + longest.last) // 2]
-    parts = [rise, *between, sink]
-    if any(one.last != other.first for one, other in pairwise(parts)):
-        return []
-    return [(rise.last + sink.first) // 2]
+    return [] if rests else [(rise.last + sink.first) // 2]
 
 
 def _parts(body: BodyGeometry, span: slice, rate_hz: float, thresholds: Thresholds) -> list[Phase]:
