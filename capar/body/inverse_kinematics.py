@@ -57,6 +57,9 @@ class Solver:
         self.longest_rad = self.radius = longest_rad
         """Most that a joint may turn in a step, ever and now [rad]."""
 
+        self.left = np.inf
+        """The error after the last step [1]."""
+
         ranges, self.speed = joint_limits(human, longest_rad)
         self.limits = [ranges, self.speed, *limits]
 
@@ -74,17 +77,25 @@ class Solver:
         """Allow long steps again, because the targets are new."""
         self.radius = self.longest_rad
 
-    def step(self, configuration: mink.Configuration) -> Float[np.ndarray, "dofs"]:
-        """Take one step [rad, m], or stay (zeros) and take shorter steps from now on."""
-        before, posture = self.error(configuration), configuration.q.copy()
+    def step(
+        self, configuration: mink.Configuration, before: float | None = None
+    ) -> Float[np.ndarray, "dofs"]:
+        """Take one step [rad, m], or stay (zeros) and take shorter steps from now on.
+
+        ``before``: the error there, if it is known from the step before (``left``).
+        """
+        before = self.error(configuration) if before is None else before
+        posture, self.left = configuration.q.copy(), before
         self.speed.limit = np.full(len(self.human.joints), self.radius)
         velocity = mink.solve_ik(configuration, self.tasks, 1.0, "daqp", limits=self.limits)
         configuration.integrate_inplace(velocity, 1.0)
         longest = float(np.abs(velocity[6:]).max())
-        if self.error(configuration) > before:
+        after = self.error(configuration)
+        if after > before:
             configuration.update(posture)
             self.radius = 0.4 * min(self.radius, longest)
             return np.zeros_like(velocity)
+        self.left = after
         if longest < SHORTEST_RAD:
             self.radius = longest
         elif longest > 0.9 * self.radius:

@@ -1,14 +1,16 @@
 """Distances between a body and the objects of a scene, and keeping limbs out of them."""
 
 import itertools
+import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import mink
 import mujoco
 import numpy as np
 import trimesh
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from scipy.spatial import ConvexHull, KDTree
 from scipy.spatial.transform import RigidTransform, Rotation
 
@@ -22,8 +24,9 @@ NEAR_M = 0.08  # Larger distances are not measured [m].
 HOLLOW = 0.98  # An object that fills a smaller share of its hull is hollow [1].
 DIFFERENCE_M = 1e-6  # Step of a difference quotient of a distance [m].
 
-SAMPLES, SPACING_M = 4000, 0.008
-"""Points on the surface of a hollow object, at least, and how far apart they are on a large one."""
+SAMPLES, SPACING_M, SHAPES = 4000, 0.008, 32
+"""Points on the surface of a hollow object, at least, how far apart they are on a large one, and
+how many surfaces are kept."""
 
 
 @dataclass(frozen=True, order=True)
@@ -60,12 +63,21 @@ class Surroundings:
             for geom in range(self.model.ngeom)
             if geom not in things
         }
-        self.ignored = {
+        stops = {
             (part, name)
             for part in set(self.parts.values())
             for name in scene.things
-            if not scene.stops(part, name)
+            if scene.stops(part, name)
         }
+        self.pairs = [
+            (geom, name)
+            for geom, part in self.parts.items()
+            for name in self.geoms
+            if (part, name) in stops
+        ]
+        """Shapes of the body, each with an object that stops it."""
+
+        self.watched = self.shapes(self.pairs)
         self.hollow = {n: _surface_points(t.shape) for n, t in scene.things.items()}
         self.planes = {}  # normals and offsets of the faces of hulls, each in its geom's frame
         for geom in things:
@@ -92,23 +104,28 @@ class Surroundings:
 
     def near(self, parts: Iterable[str] | None = None) -> list[Pair]:
         """Distances of parts of the body, or of all, from the objects near them."""
-        out = []
-        for geom, name in self.pairs(parts):
-            found = self.gap(geom, name)
-            if found < NEAR_M:
-                out.append(Pair(found, self.parts[geom], name))
+        wanted, out = None if parts is None else set(parts), []
+        for row in np.flatnonzero(self.at_least(self.watched) < NEAR_M):
+            geom, name = self.pairs[row]
+            if wanted is None or self.parts[geom] in wanted:
+                found = self.gap(geom, name)
+                if found < NEAR_M:
+                    out.append(Pair(found, self.parts[geom], name))
         return out
 
-    def pairs(self, parts: Iterable[str] | None = None) -> list[tuple[int, str]]:
-        """Shapes of parts of the body, or of all, each with an object that stops it."""
-        wanted = None if parts is None else set(parts)
-        return [
-            (geom, name)
-            for geom, part in self.parts.items()
-            if wanted is None or part in wanted
-            for name in self.geoms
-            if (part, name) not in self.ignored
-        ]
+    def shapes(self, pairs: list[tuple[int, str]]) -> Int[np.ndarray, "pairs 2"]:
+        """The shapes of some pairs."""
+        geoms = [(geom, self.geoms[name]) for geom, name in pairs]
+        return np.array(geoms, dtype=int).reshape(-1, 2)
+
+    def at_least(self, shapes: Int[np.ndarray, "pairs 2"]) -> Float[np.ndarray, "pairs"]:
+        """What pairs are apart at least: a sphere about the first, a box about the second [m]."""
+        (first, second), spots = shapes.T, self.data.geom_xpos[shapes]
+        turns = self.data.geom_xmat[second].reshape(-1, 3, 3)
+        local = np.einsum("pi,pij->pj", spots[:, 0] - spots[:, 1], turns)
+        middle, half = np.split(self.model.geom_aabb[second], 2, axis=1)
+        off = np.maximum(np.abs(local - middle) - half, 0.0)
+        return np.asarray(np.linalg.norm(off, axis=1) - self.model.geom_rbound[first])
 
     def gap(self, geom: int, name: str, most_m: float = NEAR_M) -> float:
         """How far a shape of the body is from an object; larger distances are not measured [m]."""
@@ -143,9 +160,8 @@ class Surroundings:
 
     def _distance(self, first: int, second: int) -> float:
         # The bound of a geom's sphere; mj_geomDistance of what is far apart takes as long.
-        apart = np.linalg.norm(self.data.geom_xpos[first] - self.data.geom_xpos[second])
-        reach = self.model.geom_rbound[first] + self.model.geom_rbound[second]
-        if apart - reach > NEAR_M:
+        apart_m = math.dist(self.data.geom_xpos[first], self.data.geom_xpos[second])
+        if apart_m - self.model.geom_rbound[first] - self.model.geom_rbound[second] > NEAR_M:
             return NEAR_M
         return float(mujoco.mj_geomDistance(self.model, self.data, first, second, NEAR_M, None))
 
@@ -215,6 +231,7 @@ def _depths(
     return np.asarray(scaled * (scaled - 1.0) / np.maximum(slope, 1e-9))
 
 
+@lru_cache(maxsize=SHAPES)
 def _surface_points(shape: Shape) -> KDTree | None:
     """Points on a hollow shape's surface; None where its hull is its shape."""
     mesh = trimesh.Trimesh(np.array(shape.vertices), np.array(shape.faces), process=False)
@@ -246,16 +263,14 @@ class ClearTask(mink.Task):
         self.around = around
         self.pairs = [
             (geom, name)
-            for geom, name in around.pairs()
+            for geom, name in around.pairs
             if (part := around.parts[geom]).partition("_")[2] not in (*HAND_SEGMENTS, "thumb")
             and not (part in HEAD and name in met)
         ]
         self.clear_m = np.array(
             [HEAD_CLEAR_M if around.parts[geom] in HEAD else CLEAR_M for geom, _ in self.pairs]
         )
-        geoms = [(geom, around.geoms[name]) for geom, name in self.pairs]
-        self.geoms = np.array(geoms, dtype=int).reshape(-1, 2)
-        self.reaches = around.model.geom_rbound[self.geoms].sum(axis=1)
+        self.geoms = around.shapes(self.pairs)
         super().__init__(cost=np.full(len(self.pairs), CLEAR_COST))
         self.things = {name: vectors(thing.pose) for name, thing in around.scene.things.items()}
         self.active = True
@@ -292,8 +307,6 @@ class ClearTask(mink.Task):
             return
         self.measured = np.array(configuration.q)
         self.around.place(self.measured, self.things)
-        middles = self.around.data.geom_xpos[self.geoms]
-        apart = np.linalg.norm(middles[:, 0] - middles[:, 1], axis=1) - self.reaches
         self.gaps[:] = np.inf
-        for row in np.flatnonzero(apart < HEAD_CLEAR_M):
+        for row in np.flatnonzero(self.around.at_least(self.geoms) < HEAD_CLEAR_M):
             self.gaps[row] = self.around.gap(*self.pairs[row], HEAD_CLEAR_M)

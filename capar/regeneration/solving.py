@@ -174,9 +174,10 @@ class Solver:
             look.set_cost(LOOK_COST * (1.0 - 0.9 * targets.firmness))
         self.frame.begin()
         self.steps.restart()
-        missed_m, missed_rad = np.inf, np.inf
+        missed_m, missed_rad, error = np.inf, np.inf, None
         for number in range(most):
-            self.frame.gone += self.steps.step(self.configuration)
+            self.frame.gone += self.steps.step(self.configuration, error)
+            error = self.steps.left
             before, (missed_m, missed_rad) = (missed_m, missed_rad), self.missed(targets)
             gained = abs(before[0] - missed_m) + abs(before[1] - missed_rad)
             stalled = number >= STALLED and not self.steps.shortened and gained < STALL

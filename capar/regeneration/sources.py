@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import trimesh
@@ -43,7 +44,7 @@ from capar.regeneration.holds import Meeting as Meeting
 from capar.regeneration.scenes import PlanError, Scene
 from extractors.signals.intervals import time_step
 
-SAMPLES = 5000  # Points on each surface.
+SAMPLES, SHAPES = 5000, 32  # Points on each surface, and surfaces that are kept [1].
 
 PATCH_M = 0.0015
 """Points that are further apart than the nearest by no more than this are in the patch [m]."""
@@ -53,13 +54,16 @@ def contact_points(
     first: Shape, second: Shape, relative: RigidTransform
 ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
     """The middle of the contact on each of two shapes, in each one's own frame [m]."""
-    one, two = (
-        np.concatenate([np.array(shape.vertices), surface_samples(shape)[0]])
-        for shape in (first, second)
-    )
-    gaps, nearest = KDTree(one).query(relative.apply(two))
+    one, two = _surface(first), _surface(second)
+    gaps, nearest = one.query(relative.apply(two.data))
     patch = gaps < gaps.min() + PATCH_M
-    return one[nearest[patch]].mean(axis=0), two[patch].mean(axis=0)
+    return one.data[nearest[patch]].mean(axis=0), two.data[patch].mean(axis=0)
+
+
+@lru_cache(maxsize=SHAPES)
+def _surface(shape: Shape) -> KDTree:
+    """Corners of a shape and points on it."""
+    return KDTree(np.concatenate([np.array(shape.vertices), surface_samples(shape)[0]]))
 
 
 def surface_samples(

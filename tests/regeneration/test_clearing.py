@@ -44,7 +44,7 @@ def test_slopes_of_distances_are_those_of_small_steps(
         return around.gap(geom, "thing")
 
     off = []
-    for geom, name in around.pairs():
+    for geom, name in around.pairs:
         around.place(posture, things)
         if around.gap(geom, name) < 0.5 * NEAR_M:
             slope = around.slope(geom, name)
