@@ -1,26 +1,42 @@
 """Round trips of actions on three bodies in drawn scenes, and what a regeneration takes.
 
-``python benchmarks/regeneration.py`` times the parts of two regenerations at 100 Hz; with ACTIONs
-or ``all`` it makes round trips of these, ``--scenes`` of each for each body.
+``python benchmarks/regeneration.py`` times the parts of two regenerations at 100 Hz; with ACTIONs,
+or ``all`` ten of the figures, it makes round trips of these, ``--scenes`` of each for each body;
+with ``--noisy`` of recordings without noise and then with it.
 """
 
 import argparse
+import statistics
 import time
 from collections import Counter
-from itertools import pairwise
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
+from functools import lru_cache, partial
+from itertools import pairwise, product
+from multiprocessing import get_context
+
+from observing import loop_s
+from scene import REFERENCE_S
 
 from capar.body.scripted_actions import ACTIONS, action_capture
-from capar.pipelines.round_trips import Trip, body, observed_source, round_trips
+from capar.pipelines.round_trips import Trip, body, numbered_scene, observed_source, round_trip
 from capar.regeneration.motion import perform_plan
 from capar.regeneration.paths import Care
 from capar.regeneration.planning import led
 from capar.regeneration.quality import failures, quality
 from capar.regeneration.search import reachable
+from capar.regeneration.sources import Source
 
+ALL = [
+    "drink", "sip", "touch", "touch_from_rest", "slide", "turn", "push", "pick_up", "carry", "pour",
+]  # fmt: skip
 AGENTS = ("man", "woman", "child")
 SEED = 7
 TIMED = (("drink", "child", 100.0), ("pour", "woman", 100.0))
 """Action, agent and frames a second."""
+
+Row = tuple[str, Counter[str], float]
+"""A trip in words, what came of it, and what it took [s]."""
 
 
 def line(action: str, trip: Trip) -> str:
@@ -32,18 +48,52 @@ def line(action: str, trip: Trip) -> str:
     return f"{head}{same}; {failures(trip.quality) or 'every gate passed'}"
 
 
-def performed(actions: list[str], scenes: int, *, rate_hz: float, noisy: bool) -> None:
+@lru_cache(maxsize=1)
+def recorded(action: str, rate_hz: float, *, noisy: bool) -> Source:
+    """A recording of the man."""
+    return observed_source(action_capture(action, rate_hz=rate_hz, noisy=noisy))
+
+
+def made(action: str, number: int, agent: str, *, rate_hz: float, noisy: bool) -> Row:
+    """One trip, observing the recording left out of its time."""
+    source = recorded(action, rate_hz, noisy=noisy)
+    began = time.process_time()
+    scene = numbered_scene(source, number, SEED)
+    trip = round_trip(source, agent, body(agent, source), number, scene)
+    took_s = time.process_time() - began
+    passed = trip.quality is not None and trip.quality.passed
+    came = {"in reach": trip.quality is not None, "same PAR": trip.same_par, "every gate": passed}
+    return line(action, trip), Counter(came, both=trip.same_par and passed, asked=1), took_s
+
+
+def summary(name: str, rows: list[Row]) -> str:
+    """What came of some trips."""
+    counts, took = sum((row[1] for row in rows), Counter[str]()), [row[2] for row in rows]
+    told = ", ".join(f"{counts[key]} {key}" for key in ("asked", "in reach", "same PAR"))
+    return (
+        f"{name:24} {told}, {counts['every gate']} every gate, {counts['both']} both; "
+        f"{statistics.median(took):.1f} s in the median, {max(took):.1f} s at most"
+    )
+
+
+def performed(actions: list[str], scenes: int, *, rate_hz: float, noisy: bool, jobs: int) -> None:
     """Trips of some actions, and how many come out well."""
-    for action in actions:
-        counts = Counter[str]()
-        source = observed_source(action_capture(action, rate_hz=rate_hz, noisy=noisy))
-        for trip in round_trips(source, AGENTS, scenes=scenes, seed=SEED):
-            print(line(action, trip), flush=True)
-            counts["asked"] += 1
-            counts["in reach"] += trip.quality is not None
-            counts["same PAR"] += trip.same_par
-            counts["every gate"] += trip.quality is not None and trip.quality.passed
-        print(action, ", ".join(f"{name} {count}" for name, count in counts.items()), flush=True)
+    loop = loop_s()
+    print(f"processor time; on the reference machine it is x {REFERENCE_S / loop:.2f}", flush=True)
+    every: dict[bool, list[Row]] = {each: [] for each in ((False, True) if noisy else (False,))}
+    with ExitStack() as stack:
+        each_of = map
+        if jobs > 1:
+            each_of = stack.enter_context(ProcessPoolExecutor(jobs, get_context("spawn"))).map
+        for action, noise in product(actions, every):
+            one, rows = partial(made, action, rate_hz=rate_hz, noisy=noise), list[Row]()
+            for row in each_of(one, *zip(*product(range(1, scenes + 1), AGENTS), strict=True)):
+                print(f"{row[0]}; {row[2]:.1f} s", flush=True)
+                rows.append(row)
+            print(summary(f"{action}, {'noisy' if noise else 'without noise'}", rows), flush=True)
+            every[noise] += rows
+    for noise, found in every.items():
+        print(summary(f"all, {'noisy' if noise else 'without noise'}", found))
 
 
 def timed(action: str, agent: str, rate_hz: float) -> str:
@@ -70,12 +120,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("actions", nargs="*", metavar="ACTION", help=", ".join(("all", *ACTIONS)))
     parser.add_argument("--scenes", type=int, default=2, help="how many are drawn")
-    parser.add_argument("--noisy", action="store_true", help="with a magnetic tracker's noise")
+    parser.add_argument("--noisy", action="store_true", help="a magnetic tracker's noise as well")
     parser.add_argument("--rate", type=float, default=30.0, help="frames a second")
+    parser.add_argument("--jobs", type=int, default=1, help="processes that share the trips")
     asked = parser.parse_args()
     if asked.actions:
-        actions = list(ACTIONS) if asked.actions == ["all"] else asked.actions
-        performed(actions, asked.scenes, rate_hz=asked.rate, noisy=asked.noisy)
+        actions = ALL if asked.actions == ["all"] else asked.actions
+        performed(actions, asked.scenes, rate_hz=asked.rate, noisy=asked.noisy, jobs=asked.jobs)
         return
     for row in TIMED:
         print(timed(*row), flush=True)
