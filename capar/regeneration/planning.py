@@ -133,6 +133,8 @@ class Draft:
         self.gripping = Gripping(source, scene, self.old, self.new)
         self.clear = ClearTask(self.gripping.around, source.met)
         self.grips: tuple[Grip, ...] = ()
+        self.postures = 0
+        """How many key postures were tried."""
 
     def solver(self) -> Solver:
         """The body at ease, whose limbs are kept out of objects."""
@@ -147,6 +149,7 @@ class Draft:
             for frame in self.key_frames([hold]):
                 goal = self.targets(grips, frame)
                 solver.follow(goal, most=KEY_ITERATIONS)
+                self.postures += 1
                 missed_m, _ = solver.missed(goal)
                 if missed_m > GAINED_M:
                     throws = [one for one in self.source.throws if one.thing == hold.thing]
@@ -193,6 +196,7 @@ class Draft:
         From wherever the body was before, the way there may lead through objects.
         """
         goal = self.targets(grips, frame)
+        self.postures += 1
         self.clear.active = False
         solver.follow(goal, most=KEY_ITERATIONS)
         if self._deepest_cut(solver, grips, frame):

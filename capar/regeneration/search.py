@@ -17,7 +17,8 @@ motion  as planned                                        nearly all
 refuse  remedies: nearer, higher, lower, smaller, taller  what is out of reach
 ======  ================================================  ======================================
 
-The motion that fails fewest gates (``quality``) is kept, if only ``MOST_FRAMES`` were tried.
+The motion that fails fewest gates (``quality``) is kept, if only ``MOST_FRAMES`` were tried; what
+is not in reach of ``MOST_POSTURES`` is refused.
 ``paths`` tries the paths.
 """
 
@@ -58,6 +59,10 @@ BY_CARE = {"penetration", "free hand clear", "event position", "event rotation",
 
 MOST_TURNS, FEW_TURNS = 24, 6
 """Turns of a grip that are tried; where another place or a remedy is sought [1]."""
+
+MOST_POSTURES, ATTEMPT = 300, 5
+"""Key postures that are tried until something is refused, and as how many of them the paths of one
+attempt count: either takes 70 ms, so that they take less than 30 s [1]."""
 
 MOST_FRAMES = 8000
 """Frames of all motions that are tried, so that a search ends; more only of a first motion [1].
@@ -129,50 +134,63 @@ def reachable(source: Source, scene: Scene, human: Human, style: Style | None = 
     """
     style = style or own_style(source)
     _check_co_held(source, scene, human)
-    try:
-        return _draft(source, scene, human, style)
-    except PlanError as error:
-        why = str(error)
+    why, draft = _attempt(source, scene, human, style)
+    if draft and not why:
+        return draft
+    tried = _postures(draft)
     for ahead_m, aside_m in () if scene.stays else STEPS_M:
+        if tried > MOST_POSTURES:
+            break
         nearby = beside(scene, ahead_m, aside_m)
-        if is_possible(source, nearby, human):
-            found = _draft(source, nearby, human, style)
+        missed, draft = _attempt(source, nearby, human, style, FEW_TURNS)
+        if draft and not missed:
             place = f"{ahead_m:+.2f} m ahead and {aside_m:+.2f} m to its left"
-            found.notes.append(f"stands {place} of the given place, since there {why}")
-            return found
+            draft.notes.append(f"stands {place} of the given place, since there {why}")
+            return draft
+        tried += _postures(draft)
     for words, changed, body in itertools.islice(_remedies(source, scene, human), MOST_CHANGES):
-        if is_possible(source, changed, body):
+        if tried > MOST_POSTURES:
+            break
+        missed, draft = _attempt(source, changed, body, style, FEW_TURNS)
+        if not missed:
             raise PlanError(f"{why}; {words} would do")
+        tried += _postures(draft)
     raise PlanError(
         f"{why}; no other height, size, nearer place or recorded body that was tried would do"
     )
 
 
-def why_unreachable(source: Source, scene: Scene, human: Human, style: Style) -> str | None:
-    """Why a body does not come to every goal from just there; None where it does."""
-    try:
-        _draft(source, scene, human, style)
-    except PlanError as error:
-        return str(error)
-    return None
+def why_unreachable(source: Source, scene: Scene, human: Human, style: Style) -> str:
+    """Why a body does not come to every goal from just there; empty where it does."""
+    return _attempt(source, scene, human, style)[0]
 
 
 def is_possible(source: Source, scene: Scene, human: Human) -> bool:
     """Whether a body comes to every goal from just there, with few turns of its grips tried."""
+    return not _attempt(source, scene, human, own_style(source), FEW_TURNS)[0]
+
+
+def _attempt(
+    source: Source, scene: Scene, human: Human, style: Style, most: int = MOST_TURNS
+) -> tuple[str, Draft | None]:
+    """Why a body does not come to every goal from just there, empty where it does; and the draft.
+
+    No draft where it has no paths. What is likely to fail is first asked for what lies beyond it.
+    """
     try:
         check_stance(scene, human)
-        draft = Draft(source, scene, human, own_style(source))
-        return not draft.beyond() and not choose_grips(draft, FEW_TURNS)
-    except PlanError:
-        return False
+        draft = Draft(source, scene, human, style)
+        missed = most == MOST_TURNS and choose_grips(draft, 1)
+        if missed == "":
+            return "", draft
+        return draft.beyond() or choose_grips(draft, most), draft
+    except PlanError as error:
+        return str(error), None
 
 
-def _draft(source: Source, scene: Scene, human: Human, style: Style) -> Draft:
-    check_stance(scene, human)
-    draft = Draft(source, scene, human, style)
-    if choose_grips(draft, 1) and (missed := draft.beyond() or choose_grips(draft)):
-        raise PlanError(missed)
-    return draft
+def _postures(draft: Draft | None) -> int:
+    """How many key postures an attempt took, its paths counted as some."""
+    return ATTEMPT + (draft.postures if draft else 0)
 
 
 def choose_grips(draft: Draft, most: int = MOST_TURNS) -> str:
@@ -204,7 +222,7 @@ def _best_grips(
         grips = draft.gripping.grips(group, turn)
         enough = max(min((miss.ratio for miss, _ in tried), default=np.inf), 1.0)
         tried.append((draft.missed(chosen + grips, group, enough), grips))
-        if tried[-1][0].ratio <= 1.0:
+        if tried[-1][0].ratio <= 1.0 or draft.postures > MOST_POSTURES:
             break
     return min(tried, key=lambda each: each[0].ratio)
 

@@ -293,7 +293,7 @@ def approached(
     """
     check_stance(scene, human)
     why = _beyond(source, human, scene) or why_unreachable(source, scene, human, style)
-    if why is None:
+    if not why:
         return None, *act(replace(scene, stays=True))
     tried: list[str] = []
     for ahead_m, aside_m in _places(source, human, scene):

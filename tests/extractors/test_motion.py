@@ -662,6 +662,16 @@ def test_phases_of_a_motion_follow_each_other_and_fill_it(
     assert all(one.last == two.first for one, two in pairwise(found))
 
 
+def test_it_turns_in_the_level_part_before_the_first_pause_however_far_it_goes_later() -> None:
+    times = np.arange(650) / 100.0
+    up = 0.2 * (phases_smooth((times - 0.5) / 0.9) - phases_smooth((times - 5.0) / 0.9))
+    aside = 0.2 * phases_smooth((times - 1.4) / 0.9) + 0.3 * phases_smooth(times - 3.0)
+    thing = body(np.stack([aside, np.zeros_like(up), up], axis=1), 100.0)
+    found = phases(thing, ((50, 230), (300, 400), (500, 590)), LIMITS)
+    (turn,) = turns_of_height(found, thing.middles, (), LIMITS)
+    assert 140 < turn < 230
+
+
 def test_what_sinks_and_rises_again_turns_back_only_after_it_had_risen() -> None:
     rate_hz = 100.0
     high = arc(rate_hz, up_m=0.25, aside_m=0.0)

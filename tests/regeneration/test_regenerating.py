@@ -113,6 +113,16 @@ def test_out_of_reach_is_decided_before_anything_moves_with_what_would_help() ->
         reachable(source, scene, source.human)
 
 
+def test_no_remedy_is_sought_once_enough_postures_were_tried(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(search, "MOST_POSTURES", 0)
+    source = recorded("touch")
+    scene = replace(source.scene, place=(-0.8, 0.0), stays=True)
+    with pytest.raises(PlanError, match=r"misses by \d+ mm.*; no other height, size, nearer"):
+        reachable(source, scene, source.human)
+
+
 def test_nobody_stands_inside_a_table() -> None:
     source = recorded("touch")
     with pytest.raises(PlanError, match="inside 'table'; stand further back"):

@@ -56,7 +56,10 @@ def test_the_same_action_comes_out_of_a_good_motion(action: str, agent: str, num
     assert trip.same_contacts
 
 
-NOISY = (("drink", "child", 0), ("sip", "woman", 1), ("touch", "child", 3), ("pick_up", "man", 0))
+NOISY = (
+    ("drink", "child", 0), ("sip", "woman", 1), ("touch", "child", 3), ("pick_up", "man", 0),
+    ("pour", "child", 2),
+)  # fmt: skip
 
 
 @pytest.mark.parametrize(("action", "agent", "number"), NOISY)
