@@ -27,6 +27,7 @@ SMALLEST = {
     "serving": "--requests 20 --clients 2 --seconds 1 --triples 1000",
     "spoken_requests": "--first 1",
     "starting": "--runs 0",
+    "window": "--minutes 0.2 --faces 500 --seconds 0.3",
     "words": "--verbs 2 --verbnet nowhere",
 }
 """The options with which each takes no more than some seconds."""

@@ -15,7 +15,7 @@ from capar.cli.output import error_message
 from capar.model.errors import CaparError, NoAnswerError, UnknownNameError
 
 GROUPS = {
-    "Look at captures": "observe.demo captures.inspect captures.view captures.facts "
+    "Look at captures": "observe.demo window.open_ captures.inspect captures.view captures.facts "
     "captures.new_capture trackers.devices trackers.record trackers.simulate",
     "Observe": "observe.observe explain.explain evaluate.test evaluate.evaluate",
     "Ask the Actionary": "ask.query ask.show actionary.agent actionary.object_ actionary.correct "

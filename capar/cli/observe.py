@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
 from dataclasses import replace
 from enum import StrEnum
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
@@ -21,11 +20,10 @@ if TYPE_CHECKING:
     from capar.model.calibration import Calibration
     from capar.model.capture import Capture
     from capar.model.observation import Observation
-    from capar.pipelines.live.frames import DeviceFrames, Poses
+    from capar.pipelines.live.frames import Poses
     from capar.pipelines.live.ledgers import SegmentEvent
     from capar.pipelines.live.observer import LiveObserver
     from capar_rules.engine.profiles import Profile
-    from extractors.devices.tracker import LiveTracker
     from extractors.measure import Measurements
 
 LIVE_COLUMNS = "   time  status       segment          from-to [s]     what was done"
@@ -322,8 +320,9 @@ def _observe_live(options: _Live, rules: "Profile") -> "Observation":
         )
     if options.device and not options.calibration and options.lead_in_s <= 0.0:
         raise CaparError("--device needs --calibration FILE, or --lead-in SECONDS above 0")
-    from capar.pipelines.live.frames import DeviceFrames, capture_of, lead_in, paced, replayed
+    from capar.pipelines.live.frames import lead_in, paced, replayed
     from capar.pipelines.live.observer import LiveObserver
+    from capar.pipelines.live.tracking import track
     from extractors.calibration import calibrate
     from extractors.devices.drivers import find_tracker
     from extractors.readers.bundle.capture_toml import read_capture
@@ -337,28 +336,12 @@ def _observe_live(options: _Live, rules: "Profile") -> "Observation":
     rig = read_capture(options.rig)
     rig = replace(rig, name=name or "live", sources=(), notices=())
     with find_tracker(options.device) as tracker:
-        frames = DeviceFrames(rig, tracker.describe(), known.step_s if known else None)
-        source = _batches(tracker, frames)
-        first: list[Poses] = []
-        if known is None:
-            typer.echo(f"calibrating by {least_s:g} s: act as usual", err=True)
-            while len(first) * frames.step_s < least_s:
-                first += next(source)
-            known = calibrate(capture_of(rig, first))
-        observer = LiveObserver(rig, known, rules=rules, name=name, sentences=True)
-        seen = _run(observer, chain([first], source), options)
+        observer, frames, batches = track(
+            tracker, rig, known, least_s, rules=rules, say=lambda text: typer.echo(text, err=True)
+        )
+        seen = _run(observer, batches, options)
     typer.echo(f"{observer.frames} frames, {frames.filled} of them lost on the way", err=True)
     return seen
-
-
-def _batches(tracker: "LiveTracker", frames: "DeviceFrames") -> "Iterator[list[Poses]]":
-    """What a tracker sends, again and again; what happens to it is printed."""
-    heard = 0
-    while True:
-        yield [each for frame in tracker.poll(0.1) for each in frames.poses(frame)]
-        for event in tracker.events[heard:]:
-            typer.echo(event.message, err=True)
-        heard = len(tracker.events)
 
 
 def _stored(path: Path | None) -> "Calibration | None":

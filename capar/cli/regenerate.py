@@ -242,40 +242,18 @@ def _act(
     where: "Scene",
     names: Mapping[str, str] | None = None,
 ) -> "tuple[Approach | None, Performed]":
-    """Perform an action from the given place, or, if steps may be taken, from where they lead.
+    """Perform an action as the options say.
 
     Raises:
         PlanError: It is out of reach, and no step helps.
     """
-    from capar.pipelines.preparation import asserted
-    from capar.pipelines.recordings import Performed
-    from capar.pipelines.round_trips import by_hand, observed_source
-    from capar.regeneration.efforts import regenerate_in_manner
-    from capar.regeneration.quality import Quality, contact_gate
-    from capar.regeneration.stepping import approached
-    from capar.regeneration.styles import borrowed_style, own_style
+    from capar.pipelines.performance import Manner, perform_recorded
 
-    assertions = asserted(source) if names is not None else None
-    source = by_hand(source, task.hand) if task.hand and names is None else source
-    style = own_style(source, task.kind)
-    if task.style_of:
-        other = observed_source(task.style_of)
-        style = borrowed_style(source, by_hand(other, task.hand) if task.hand else other, task.kind)
-    style = replace(style, force=task.force)
-
-    def act(there: "Scene") -> "tuple[Performed, Quality]":
-        motion, quality, report = regenerate_in_manner(
-            source, human, there, style, effort=task.effort, duration_s=task.duration_s
-        )
-        if assertions is not None:
-            gate = contact_gate(motion, assertions)
-            quality = Quality((*quality.gates, gate), quality.told)
-        return Performed(motion, quality, names or {}, report), quality
-
-    if not task.step:
-        return None, act(where)[0]
-    stepped, done, _ = approached(source, human, where, style, act)
-    return stepped, done
+    manner = Manner(
+        task.kind, task.style_of or "", task.duration_s, task.hand or "", task.effort, task.force,
+        task.step,
+    )  # fmt: skip
+    return perform_recorded(source, human, where, manner, names)
 
 
 def _perform_instance(task: _Task, what: str) -> None:

@@ -1,11 +1,13 @@
 """The pipelines from captures to language: tellings, fitting verbs, and what can be said."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from capar.model.capture import Capture
-from capar.model.observation import Observation, find_segment, split_capture
+from capar.model.facts import Moving, OfAgent, Touching
+from capar.model.observation import Observation, Segment, find_segment, split_capture
 from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from kb.language.describe import Detail
 from kb.language.describe import describe as told
@@ -50,6 +52,34 @@ def describe(
     observation = seen if isinstance(seen, Observation) else observe(seen)
     known = primitive_words(primitive_files()) if words is None else words
     return told(observation, detail=detail, timed=timed, words=known)
+
+
+def segment_sentence(
+    seen: Observation, segment: Segment, *, words: Sequence[PrimitiveWords] | None = None
+) -> str:
+    """Say in plain English what was done in one segment; empty where nothing was touched.
+
+    Args:
+        seen: The observation that it is of.
+        segment: One of its segments.
+        words: What the primitives are called; by default as the rules that ship call them.
+    """
+    if not segment.objects:
+        return ""
+    owner = next(link for link in seen.links if link.ee == segment.ee)
+    alone = replace(
+        seen,
+        agent=next(
+            (one for one in seen.others if one.name == seen.performer(segment.ee)), seen.agent
+        ),
+        others=(),
+        links=(replace(owner, segments=(replace(segment, index=0),)),),
+        facts=tuple(one for one in seen.facts if isinstance(one, Touching | Moving | OfAgent)),
+        joint=(),
+        relations=(),
+        notices=(),
+    )
+    return describe(alone, words=words)
 
 
 def verbs_for(

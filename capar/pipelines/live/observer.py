@@ -142,9 +142,17 @@ class LiveObserver:
         """
         events = self._evaluate(last=True)
         self.rules_process.close()
-        capture = self._buffer.recording()
+        capture = self.recording()
         measurements = measure(capture, self.calibration)
         return events, observe_measured(capture, measurements, rules=self.rules, name=self._name)
+
+    def recording(self) -> Capture:
+        """Every frame that was pushed, as a capture.
+
+        Raises:
+            CaptureError: There are fewer than two.
+        """
+        return self._buffer.recording()
 
     def _is_due(self) -> bool:
         """Whether segments are to be sought again, or one that was found is to be settled."""

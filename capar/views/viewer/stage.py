@@ -8,11 +8,14 @@ import trimesh
 from jaxtyping import Bool, Float, Int
 from scipy.spatial.transform import Rotation
 
-from capar.body.human import poses_of
+from capar.body.human import Human, poses_of
 from capar.body.sensor_fitting import Fit
 from capar.body.shapes import form_mesh, forms, joined
 from capar.body.skeleton import skeleton
 from capar.model.capture import Capture, Role, Sensor, Shape, TagObject, TagType
+from capar.model.facts import LookingAt, Touching
+from capar.model.observation import Observation
+from capar.views.picture import frame_clock
 
 SMOOTH_HZ = 60.0
 """Frames are thinned to about this rate [Hz]: what screens show."""
@@ -147,24 +150,37 @@ def with_mannequin(shown: Stage, fit: Fit) -> Stage:
     under the lowest soles is added and named as assumed.
     """
     nearest = np.abs(shown.times[:, None] - fit.times[None]).argmin(axis=1)
-    poses = poses_of(fit.human, fit.motion[nearest])
     known = _known(fit)[nearest]
+    unseen = {f"body_{name}" for name in fit.unrecorded}
+    bodies = [
+        replace(
+            one,
+            positions=np.where(known[:, None], one.positions, np.nan),
+            faint=one.name in unseen,
+        )
+        for one in body_parts(fit.human, fit.motion[nearest])
+    ]
+    if not any(is_ground(body) for body in shown.bodies):
+        bodies.append(_ground(bodies))
+    return replace(shown, bodies=(*shown.bodies, *bodies))
+
+
+def body_parts(
+    human: Human, motion: Float[np.ndarray, "frames coordinates"]
+) -> tuple[StagedBody, ...]:
+    """The segments of a human body in postures, as bodies to be shown."""
+    poses = poses_of(human, motion)
     parts: dict[str, list[trimesh.Trimesh]] = {}
-    segments = skeleton(fit.human.measures)
-    for form in forms(fit.human.measures, segments):
+    for form in forms(human.measures, skeleton(human.measures)):
         parts.setdefault(form.body, []).append(form_mesh(form))
-    bodies, unseen = [], set(fit.unrecorded)
+    out = []
     for number, name in enumerate(poses.names):
         if name in parts:
             mesh = joined(parts[name])
             shape = Shape(np.array(mesh.vertices), np.array(mesh.faces), description="mannequin")
-            places = np.where(known[:, None], poses.positions[:, number], np.nan)
-            at = places, poses.orientations[:, number]
-            one = StagedBody(f"body_{name}", "body", shape, *at, faint=name in unseen)
-            bodies.append(one)
-    if not any(is_ground(body) for body in shown.bodies):
-        bodies.append(_ground(bodies))
-    return replace(shown, bodies=(*shown.bodies, *bodies))
+            at = poses.positions[:, number], poses.orientations[:, number]
+            out.append(StagedBody(f"body_{name}", "body", shape, *at))
+    return tuple(out)
 
 
 def _known(fit: Fit) -> Bool[np.ndarray, "frames"]:
@@ -192,3 +208,47 @@ def _ground(bodies: Sequence[StagedBody]) -> StagedBody:
     middle = np.array([*(low + high) / 2.0, top - THICK_M / 2.0])
     turns = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1))
     return StagedBody(GROUND, "fixed", shape, np.tile(middle, (frames, 1)), turns, faint=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Intervals:
+    """When pairs of bodies touch, or when one looks at the other."""
+
+    pairs: tuple[tuple[str, str], ...]
+    starts_s: Float[np.ndarray, "intervals"]
+    ends_s: Float[np.ndarray, "intervals"]
+
+    def at(self, time_s: float) -> list[tuple[str, str]]:
+        """The pairs of those at a time."""
+        now = np.flatnonzero((self.starts_s <= time_s) & (time_s <= self.ends_s))
+        return [self.pairs[number] for number in now]
+
+
+def intervals(observation: Observation | None, kind: type[Touching] | type[LookingAt]) -> Intervals:
+    """The intervals of contacts, or of looks, in an observation; none without one."""
+    found = [] if observation is None else [f for f in observation.facts if isinstance(f, kind)]
+    if observation is None or not found:
+        return Intervals((), np.zeros(0), np.zeros(0))
+    clock = frame_clock(observation, {})
+    pairs = tuple(
+        (each.sensor, each.object) if isinstance(each, LookingAt) else (each.body, each.other)
+        for each in found
+    )
+    starts, ends = np.array([(clock(each.first), clock(each.last)) for each in found]).T
+    return Intervals(pairs, starts, ends)
+
+
+def known_steps(body: StagedBody) -> Bool[np.ndarray, "steps"]:
+    """Whether a body is seen at both ends of each step from a frame to the next."""
+    known = ~np.isnan(body.positions[:, 0])
+    return np.asarray(known[:-1] & known[1:])
+
+
+def way(
+    body: StagedBody, now: Bool[np.ndarray, "frames"] | None = None
+) -> Float[np.ndarray, "lines 2 3"]:
+    """The steps of a body as lines [m], without those where it was lost; of some frames only."""
+    kept = known_steps(body)
+    if now is not None:
+        kept = kept & now[:-1] & now[1:]
+    return np.stack([body.positions[:-1], body.positions[1:]], axis=1)[kept]

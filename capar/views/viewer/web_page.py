@@ -12,8 +12,8 @@ from trimesh.exchange.gltf import export_glb
 
 from capar.model.facts import LookingAt, Touching
 from capar.model.observation import Observation
-from capar.views.picture import COLOURS, CONTACT, MOTION, OTHERS, PALE, Kind, frame_clock, rows
-from capar.views.viewer.stage import Stage
+from capar.views.picture import COLOURS, CONTACT, MOTION, OTHERS, PALE, Kind, rows
+from capar.views.viewer.stage import Stage, intervals
 
 
 def surfaces_glb(shown: Stage) -> bytes:
@@ -77,8 +77,8 @@ def _data(shown: Stage, observation: Observation | None) -> dict[str, Any]:
             for body in shown.bodies
         ],
         "rows": [] if observation is None else _rows(observation),
-        "contacts": [] if observation is None else _contacts(observation),
-        "looks": [] if observation is None else _looks(observation),
+        "contacts": _pairs(observation, Touching),
+        "looks": _pairs(observation, LookingAt),
     }
 
 
@@ -107,15 +107,10 @@ def _rows(observation: Observation) -> list[dict[str, Any]]:
     return out
 
 
-def _contacts(observation: Observation) -> list[list[Any]]:
-    """Each contact: both bodies, begin and end [s]."""
-    clock = frame_clock(observation, {})
-    found = [each for each in observation.facts if isinstance(each, Touching)]
-    return [[each.body, each.other, clock(each.first), clock(each.last)] for each in found]
-
-
-def _looks(observation: Observation) -> list[list[Any]]:
-    """Each look: who, at what, begin and end [s]."""
-    clock = frame_clock(observation, {})
-    found = [each for each in observation.facts if isinstance(each, LookingAt)]
-    return [[each.sensor, each.object, clock(each.first), clock(each.last)] for each in found]
+def _pairs(
+    observation: Observation | None, kind: type[Touching] | type[LookingAt]
+) -> list[list[Any]]:
+    """Each contact or look: both bodies, begin and end [s]."""
+    found = intervals(observation, kind)
+    spans = zip(found.pairs, found.starts_s.tolist(), found.ends_s.tolist(), strict=True)
+    return [[*pair, start_s, end_s] for pair, start_s, end_s in spans]

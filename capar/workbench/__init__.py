@@ -1,0 +1,1 @@
+"""The interactive system: captures, reasons, rules and knowledge in one window of the browser."""
