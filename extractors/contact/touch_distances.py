@@ -313,7 +313,8 @@ def estimated_pair(
     for found, frames in _witnesses(capture, first.name, second.name, evidence):
         if frames.any():
             margin = tolerance_m if found is Found.REST else limits.touch_margin_m
-            return _pair(first, second, found, frames, margin, limits)
+            points = first.shape is None and second.shape is None
+            return _pair(first, second, found, frames, margin, limits, points=points)
     return PairCalibration(first.name, second.name, 0.0, 0.0, pivots=True, found=Found.NEVER)
 
 
@@ -349,7 +350,8 @@ def with_gaps(
     """Pairs of surfaces with the gap at which one steadily carries the other, if it has one.
 
     Of all the end-effectors that move as one with an object it is the nearest that carries it;
-    if it touches the object within the distance of release there is no gap.
+    if it touches the object within the distance of release there is no gap. Where one of the
+    surfaces is a stand-in, the bodies touch at the gap, as bodies without surfaces do.
     """
     known = list(pairs)
     gaps: dict[tuple[str, str], float] = {}
@@ -367,8 +369,14 @@ def with_gaps(
         rivals = [gap for (_, thing), gap in gaps.items() if thing == pair.second]
         gap_m = gaps.get((pair.first, pair.second), 0.0)
         if pair.release_m < gap_m <= evidence.thresholds.settle_reach_m and gap_m == min(rivals):
-            count = int(evidence.carried[pair.first, pair.second].sum())
-            yield replace(pair, frames=count, shown_m=gap_m)
+            frames, limits = evidence.carried[pair.first, pair.second], evidence.thresholds
+            carrier, thing = bodies.sensors[pair.first], bodies.objects[pair.second]
+            sources = {each.shape.source for each in (carrier, thing) if each.shape is not None}
+            if ShapeSource.STAND_IN in sources:
+                margin_m = limits.touch_margin_m
+                yield _pair(carrier, thing, Found.CO_MOTION, frames, margin_m, limits, points=True)
+            else:
+                yield replace(pair, frames=int(frames.sum()), shown_m=gap_m)
         else:
             yield pair
 
@@ -399,12 +407,14 @@ def _pair(
     frames: Holds,
     margin_m: float,
     thresholds: Thresholds,
+    *,
+    points: bool,
 ) -> PairCalibration:
-    points = TouchPoints()
-    surfaces = first.shape is not None or second.shape is not None
-    if not surfaces:
-        points = touch_points(first.poses.settled, second.poses.settled, frames, thresholds)
-        apart = points.apart(first.poses.settled, second.poses.settled, frames)
+    """The distance of the points that stay nearest to each other, or of surfaces, and a margin."""
+    touch = TouchPoints()
+    if points:
+        touch = touch_points(first.poses.settled, second.poses.settled, frames, thresholds)
+        apart = touch.apart(first.poses.settled, second.poses.settled, frames)
     else:
         apart = _surface_distances(first, second, frames, SAMPLES)
     touch_m = float(np.quantile(apart, thresholds.touch_quantile)) + margin_m
@@ -413,11 +423,11 @@ def _pair(
         second.name,
         touch_m,
         touch_m,
-        pivots=not surfaces,
+        pivots=points,
         found=found,
         frames=int(frames.sum()),
-        first_point=points.first,
-        second_point=points.second,
+        first_point=touch.first,
+        second_point=touch.second,
     )
 
 

@@ -83,12 +83,13 @@ STAGES: Mapping[str, Sequence[Sequence[str]]] = {
         ("wrist_radial", "wrist_ulnar"),
         ("forearm",),
         ("elbow", "elbow_lateral", "elbow_medial"),
+        ("fingers",),
     ),
     "foot": (("foot",), ("ankle_lateral", "ankle_medial"), ("shank",)),
     "head": (("head",),),
 }
 """Parts and places whose markers carry an end-effector's sensor, the next ones where there are
-fewer than three: the joint next to it, then the segment next to it."""
+fewer than three: the joint next to it, then the segment next to it; the fingers of a hand last."""
 
 BENDS = ("toe_tip", "toes", "fingertip", "fingers")
 """Places that bend against the rest of the foot or hand."""
@@ -214,7 +215,8 @@ def _marker_sets(markers: Points) -> dict[str, list[str]]:
                     shared = shared[:-1]
                 shared = shared.rstrip(":_. 0123456789")
                 subject, _, rest = shared.partition(":")
-                shared = subject if len(rest) == 1 else shared  # ``Box`` of ``Box:B1``
+                if len(rest) == 1 or rest.lower() == subject.lower():
+                    shared = subject  # ``Box`` of ``Box:B1``, ``Box:BOX1``
                 name = shared if len(shared) > 2 else start if stem else "markers_1"
                 numbered = (f"{name.removesuffix('_1')}_{n}" for n in range(2, len(sets) + 3))
                 free = (each for each in (name, *numbered) if each not in sets)

@@ -194,11 +194,16 @@ def _frame(held: Sequence[Contents]) -> tuple[float, str, list[str]]:
 
 
 def _bodies(file: _File) -> Iterator[_Body]:
-    """Bodies and marker sets; of a skeleton only its end-effectors, for joints are no objects."""
+    """Bodies and marker sets; of a skeleton only its end-effectors, for joints are no objects.
+
+    Beside bodies of unknown shape a skeleton's hands have no stand-in: it is shown by how they are
+    carried where those touch.
+    """
     recording = file.recording
     kinds = end_effectors(recording) if recording.parents else {}
     joints = {*recording.parents, *recording.parents.values()}
     names = [name for name in recording.bodies if name in kinds or name not in joints]
+    props = any(name not in kinds for name in names)
     for name in names or list(recording.bodies)[:1]:
         side = file.body[name].side if name in file.body else "none"
         yield _Body(
@@ -206,7 +211,7 @@ def _bodies(file: _File) -> Iterator[_Body]:
             file.key,
             f"body = {quoted(name)}",
             side if side != "none" else side_of(name),
-            _stand_in(file, name, kinds.get(name, "")),
+            "" if props else _stand_in(file, name, kinds.get(name, "")),
             _gaze(file, name) if kinds.get(name) == "head" else None,
         )
     for name, members in file.others.sets.items():

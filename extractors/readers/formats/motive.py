@@ -133,17 +133,14 @@ def _orientations(
 
 
 def _parents(header: list[list[str]], groups: Groups) -> dict[str, str]:
-    """The parent of each bone, as the file states it or as the names tell it."""
+    """The parent of each bone, by the id that the file states or by what the names tell."""
     bones = {name: min(own.values()) for (kind, name), own in groups.items() if kind == "Bone"}
-    row = next((each for each in header[2:-1] if each[1] == "Parent"), None)
-    if row is None:
+    rows = {row[1]: row for row in header[2:-1]}
+    if not {"ID", "Parent"} <= {*rows}:
         return parents_by_names(bones)
-    out = {}
-    for name, column in bones.items():
-        for parent in (row[column], f"{name.partition(':')[0]}:{row[column]}"):
-            if parent in bones and parent != name:
-                out[name] = parent
-    return out
+    ids = {rows["ID"][column]: name for name, column in bones.items()}
+    stated = {name: ids.get(rows["Parent"][column]) for name, column in bones.items()}
+    return {name: parent for name, parent in stated.items() if parent}
 
 
 def _recorded_at(stated: dict[str, str]) -> str:
