@@ -19,7 +19,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
+    from typing import Any
 
     from capar.model.capture import Capture as Capture
     from capar.model.errors import CaparError as CaparError
@@ -61,6 +63,7 @@ __all__ = [
     "describe",
     "explain",
     "from_json",
+    "label",
     "observe",
     "open_actionary",
     "read_capture",
@@ -89,6 +92,30 @@ def open_actionary(
     if place == ":memory:":
         return Actionary.in_memory()
     return Actionary.open(place, read_only=read_only, wait_s=wait_s)
+
+
+def label(
+    captures: "Iterable[Capture | Observation | Path | str]",
+    *,
+    per_frame: bool = False,
+    vocabulary: "Path | str | None" = None,
+    rules: str = "extended",
+) -> "Iterator[dict[str, Any]]":
+    """What was observed as rows: segments, contacts, possessions and motions (docs/labels.md).
+
+    Args:
+        captures: Observations, captures, or patterns of their places.
+        per_frame: Whether a row is a frame of an end-effector instead.
+        vocabulary: A file of rules that map our names to other labels.
+        rules: The name of the rule profile to observe with.
+
+    Raises:
+        CaparError: A capture or the vocabulary has a fault.
+    """
+    rows: Iterator[dict[str, Any]] = import_module("capar.evaluation.labelling").label(
+        captures, per_frame=per_frame, vocabulary=vocabulary, rules=rules
+    )
+    return rows
 
 
 def __getattr__(name: str) -> object:

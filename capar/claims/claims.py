@@ -4,9 +4,7 @@ import re
 import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from functools import cache
-from glob import glob
 from pathlib import Path
 from typing import TypeVar
 
@@ -19,7 +17,9 @@ from capar_rules.authoring.user_primitives import rules_of
 from capar_rules.authoring.user_rules import user_rules
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from capar_rules.lint.checking import admitted_profile
-from extractors.readers.bundle.capture_toml import read_capture, takes
+from extractors.readers.bundle.capture_toml import read_capture
+from extractors.readers.bundle.patterns import SUFFIX as SUFFIX
+from extractors.readers.bundle.patterns import find_captures
 
 STEP = re.compile(r"([A-Z]\w*)(?:\(([^()]*)\))?")
 """A step of a claim, such as ``MoveObjTo(mug, head)``: its name, then its objects."""
@@ -307,8 +307,6 @@ def _shown(spans: Sequence[Span]) -> str:
     return ", ".join(f"{first:.2f} to {last:.2f} s" for first, last in spans) or "never"
 
 
-SUFFIX = ".motion.toml"
-
 _EXAMPLE = (
     'Write captures = ["drink_*"] and, for each claim, [[expect]] with '
     'that = "right_hand MoveObjTo(mug, head)".'
@@ -356,7 +354,7 @@ def read_motion_test(path: Path) -> MotionTest:
     rules = content.get("rules")
     return MotionTest(
         path,
-        tuple(dict.fromkeys(_captures(path, patterns))),
+        tuple(find_captures(patterns, path.parent, where=path)),
         tuple(str(each) for each in claims),
         str(content.get("profile", DEFAULT)),
         path.parent / str(rules) if rules else None,
@@ -400,44 +398,3 @@ def _observed(capture: str, base: Profile) -> tuple[Observation, Names]:
     )
     seen = observe(trial, rules=base)
     return seen, names_of(seen, rules=base, sensors=looking)
-
-
-def _captures(path: Path, patterns: Sequence[str]) -> Iterator[str]:
-    for pattern in patterns:
-        found = [str(each) for each in _places(path.parent, pattern)]
-        if not found and ":" in pattern:
-            found = _takes(path, pattern)
-        if not found:
-            raise FileError(path, f"no capture matches {pattern!r}.", _EXAMPLE)
-        yield from found
-
-
-def _places(folder: Path, pattern: str) -> list[Path]:
-    """Captures that a pattern means, from that folder on or, absolute, from the root."""
-    # Path.glob refuses absolute patterns.
-    found = glob(pattern, root_dir=folder, recursive=True, include_hidden=True)  # noqa: PTH207
-    paths = [folder / each for each in sorted(found)]
-    return [
-        path
-        for path in paths
-        if (path / "capture.toml").is_file()
-        or (path.is_file() and path.suffix == ".toml" and not path.name.endswith(SUFFIX))
-    ]
-
-
-def _takes(path: Path, pattern: str) -> list[str]:
-    """The takes that FOLDER:TAKE or FOLDER:* means, folders sorted, takes as they are declared.
-
-    Raises:
-        FileError: There are such folders, and none has such a take.
-        CaparError: A capture.toml cannot be read.
-    """
-    stem, _, wanted = pattern.rpartition(":")
-    folders = _places(path.parent, stem)
-    known = [(each, take) for each in folders for take in takes(each)]
-    found = [f"{each}:{take}" for each, take in known if fnmatchcase(take, wanted)]
-    if folders and not found:
-        names = ", ".join(dict.fromkeys(take for _, take in known))
-        there = f"Its takes are: {names}." if names else "It is one capture without takes."
-        raise FileError(path, f"no take matches {pattern!r}.", there)
-    return found

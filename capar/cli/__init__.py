@@ -17,7 +17,7 @@ from capar.model.errors import CaparError, NoAnswerError, UnknownNameError
 GROUPS = {
     "Look at captures": "observe.demo window.open_ captures.inspect captures.view captures.facts "
     "captures.new_capture trackers.devices trackers.record trackers.simulate",
-    "Observe": "observe.observe explain.explain evaluate.test evaluate.evaluate",
+    "Observe": "observe.observe label.label explain.explain evaluate.test evaluate.evaluate",
     "Ask the Actionary": "ask.query ask.show actionary.agent actionary.object_ actionary.correct "
     "actionary.forget ask.check",
     "Rules": "rules.rules",

@@ -177,7 +177,7 @@ class ObservedObject:
 
 
 #: What a data frame of an observation can hold a row of
-FrameOf = Literal["segments", "contacts", "facts"]
+FrameOf = Literal["segments", "contacts", "motions", "facts"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,7 +238,7 @@ class Observation:
         return page
 
     def to_frame(self, of: FrameOf = "segments") -> Any:
-        """A pandas DataFrame of its segments, contacts or facts, one a row; times in seconds."""
+        """A pandas DataFrame of segments, contacts, motions or facts, one a row; times in s."""
         return display("frame")(self, of)
 
     def performer(self, ee: str) -> str:

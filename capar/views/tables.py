@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from capar.model.calibration import Calibration, Found
 from capar.model.errors import CaparError, UnknownNameError
-from capar.model.facts import Touching
+from capar.model.facts import MovedBy, Touching
 from capar.model.observation import Observation, ObservedLink, Segment, SegmentAddress
 from capar.model.par import (
     Call,
@@ -431,7 +431,7 @@ def observation_frame(observation: Observation, of: str) -> Any:
 
     Args:
         observation: What was understood of a capture.
-        of: ``segments``, ``contacts`` or ``facts``; each is a row.
+        of: ``segments``, ``contacts``, ``motions`` or ``facts``; each is a row.
 
     Raises:
         UnknownNameError: There is no frame of that.
@@ -485,6 +485,21 @@ def _contacts(observation: Observation) -> Iterator[Row]:
             }
 
 
+def _motions(observation: Observation) -> Iterator[Row]:
+    for fact in observation.facts:
+        if isinstance(fact, MovedBy):
+            yield {
+                "capture": observation.capture,
+                "object": fact.object,
+                "mover": fact.mover,
+                "how": fact.how,
+                "start_s": fact.first / observation.rate_hz,
+                "end_s": fact.last / observation.rate_hz,
+                "first": fact.first,
+                "last": fact.last,
+            }
+
+
 def _facts(observation: Observation) -> Iterator[Row]:
     for fact in observation.facts:
         yield {
@@ -507,6 +522,10 @@ FRAMES: Mapping[str, tuple[tuple[str, ...], Callable[[Observation], Iterator[Row
     "contacts": (
         ("capture", "body", "other", "start_s", "end_s", "first", "last"),
         _contacts,
+    ),
+    "motions": (
+        ("capture", "object", "mover", "how", "start_s", "end_s", "first", "last"),
+        _motions,
     ),
     "facts": (("capture", "predicate", "arguments", "atom"), _facts),
 }  # fmt: skip

@@ -1,0 +1,99 @@
+"""Write labels of what was observed, for the pipelines of others."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from typer import Argument, Option
+
+from capar.cli import options
+from capar.cli.output import check_new_folder, check_writable, progress, written
+from capar.model.errors import CaparError
+
+
+class Format(StrEnum):
+    """How labels are written."""
+
+    CSV = "csv"
+    JSON = "json"
+    PARQUET = "parquet"
+    ELAN = "elan"
+    PRAAT = "praat"
+    LEROBOT = "lerobot"
+
+
+FOLDERS = (Format.ELAN, Format.PRAAT, Format.LEROBOT)
+"""Formats of which the output is a folder."""
+
+
+def label(
+    captures: Annotated[
+        list[str], Argument(help="Captures: folders, patterns with *, FOLDER:TAKE or FOLDER:*.")
+    ],
+    output: Annotated[
+        Path, Option("--output", "-o", help="A file; of elan, praat and lerobot a new folder.")
+    ],
+    format_: Annotated[Format, Option("--format", help="How they are written.")] = Format.CSV,
+    per_frame: Annotated[
+        bool, Option("--per-frame", help="A row a frame of each end-effector (csv, json, parquet).")
+    ] = False,
+    vocabulary: Annotated[
+        Path | None,
+        Option(metavar="FILE", help="Other labels for our names, as `capar evaluate --mapping`."),
+    ] = None,
+    dataset: Annotated[
+        Path | None, Option(metavar="FOLDER", help="Of lerobot: the data set to copy.")
+    ] = None,
+    effector: Annotated[str, Option(metavar="NAME", help="Of lerobot: whose segments.")] = "",
+    profile: options.ProfileName = "extended",
+    rules: options.Rules = None,
+    actionary: options.Beside = None,
+    steady: options.Steady = None,
+) -> None:
+    r"""Write what was observed as labels: segments, contacts, possessions and motions.
+
+    A segment has its name, more general names, objects and their kinds, what it reached, where
+    bodies are, a sentence and the rule that named it.
+
+    \b
+        capar label 'study:*' -o labels.parquet --format parquet
+        capar label demos --per-frame -o frames.csv --vocabulary words.toml
+        capar label take1 take2 -o annotations --format elan
+        capar label 'robot:*' --format lerobot --dataset robot_data -o labelled_data
+    """
+    from capar.evaluation.labelling import arrow, write_labels
+    from capar.evaluation.labelling import label as labels
+    from capar.evaluation.plan import read_mapping
+    from extractors.readers.bundle.patterns import find_captures
+
+    if (format_ is Format.LEROBOT) != (dataset is not None):
+        raise CaparError("--format lerobot takes --dataset FOLDER, and no other format does")
+    if per_frame and format_ in FOLDERS:
+        raise CaparError(f"{format_} has no rows by frame; leave out --per-frame, or write csv")
+    if format_ in FOLDERS:
+        check_new_folder(output)
+    else:
+        check_writable(output)
+    if format_ in {Format.PARQUET, Format.LEROBOT}:
+        arrow()
+    mapping = read_mapping(vocabulary) if vocabulary else None
+    base = options.rule_base(profile, rules, actionary, steady=steady)
+    places = find_captures(captures)
+    rows = [
+        row
+        for place in progress("observing")(places)
+        for row in labels([place], per_frame=per_frame, vocabulary=mapping, rules=base)
+    ]
+    if dataset is not None:
+        from capar.evaluation.lerobot import write_subtasks
+
+        counts = write_subtasks(rows, dataset, output, effector=effector)
+        told = f"{sum(counts.values())} subtasks of {len(counts)} episodes"
+    elif format_ in FOLDERS:
+        told = f"{len(write_labels(rows, format_, output))} files"
+    else:
+        with written(output) as draft:
+            write_labels(rows, format_, draft)
+        told = f"{len(rows)} rows of {len(places)} capture{'s' * (len(places) != 1)}"
+    typer.echo(f"wrote {output}: {told}")
