@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from capar.pipelines.explanation import explain as explain
     from capar.pipelines.explanation import why_not as why_not
     from capar.pipelines.language import describe as describe
+    from capar.pipelines.many import observe_many as observe_many
     from capar.pipelines.observation import calibrate as calibrate
     from capar.pipelines.observation import observe as observe
     from extractors.readers.bundle.capture_toml import read_capture as read_capture
@@ -48,6 +49,7 @@ _LAZY = {
     "explain": "capar.pipelines.explanation",
     "from_json": "capar.model.json_form",
     "observe": "capar.pipelines.observation",
+    "observe_many": "capar.pipelines.many",
     "read_capture": "extractors.readers.bundle.capture_toml",
     "to_json": "capar.model.json_form",
     "why_not": "capar.pipelines.explanation",
@@ -65,6 +67,7 @@ __all__ = [
     "from_json",
     "label",
     "observe",
+    "observe_many",
     "open_actionary",
     "read_capture",
     "to_json",

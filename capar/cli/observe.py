@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
 from dataclasses import replace
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
@@ -38,9 +40,14 @@ class OnUnknown(StrEnum):
 
 
 def observe(
-    capture: Annotated[
-        str, Argument(help="A capture: its folder, or FOLDER:TAKE. Not with --device.")
-    ] = "",
+    captures: Annotated[
+        list[str] | None,
+        Argument(
+            metavar="CAPTURE...",
+            help="A capture: its folder, or FOLDER:TAKE. Or many: patterns with *, FOLDER:*, or a "
+            "folder of captures. None with --device.",
+        ),
+    ] = None,
     profile: options.ProfileName = "extended",
     name: Annotated[str, Option(help="What the whole action is called.")] = "",
     on_unknown: Annotated[
@@ -70,6 +77,12 @@ def observe(
     ] = False,
     wait: options.Wait = 0.0,
     new: options.New = False,
+    jobs: Annotated[
+        int, Option(min=1, metavar="N", help="Of many captures: how many processes observe.")
+    ] = 1,
+    quiet: Annotated[
+        bool, Option("--quiet", help="Print no notes and no progress; of many, failures alone.")
+    ] = False,
     live: Annotated[
         bool, Option("--live", help="Print segments while they happen, of CAPTURE or --device.")
     ] = False,
@@ -99,21 +112,38 @@ def observe(
         Option(metavar="NAME", help="With --live: send events as Lab Streaming Layer Markers too."),
     ] = "",
 ) -> None:
-    """Say what was done in a capture: named segments and their PAR.
+    r"""Say what was done in a capture: named segments and their PAR.
 
     Segments are those of each hand, foot or head; the complex PAR is what they make together.
+    Of many captures each has a line; failures are told at the end with their commands. With
+    --actionary what is kept is not observed again, so that a run that was ended goes on.
+
+    \b
+        capar observe mine --plot mine.png
+        capar observe 'study:*' more_captures --jobs 2 --actionary known
+
     With --live a segment is printed when it ends, provisional first and then settled; Ctrl-C ends
     it. Other programs get the same events with --json, --websocket or --lsl-markers.
     """
+    given = captures or []
+    capture = given[0] if given else ""
     forms = {"--json": json, "--script": script, "--pars": pars}
     named = [form for form, given in forms.items() if given]
     if len(named) > 1:
         raise CaparError(f"{' and '.join(named)} print different things; say one of them")
     check_picture(plot)
     if actionary:
-        if Path(actionary).is_file():
-            raise FileError(actionary, "is a file; an Actionary is a folder.", "Name a folder.")
         options.confirm_new(actionary, new=new)
+    rule_base = partial(options.rule_base, profile, rules, actionary, steady=steady)
+    if len(given) > 1 or (given and _means_many(capture)):
+        single = {
+            "--script": script, "--pars": pars, "--plot": plot, "--set": set_, "--fit": fit,
+            "--on-unknown": on_unknown, "--name": name, "--live": live, "--device": device,
+        }  # fmt: skip
+        if refused := [option for option, value in single.items() if value]:
+            raise CaparError(f"of many captures there is no {' and no '.join(refused)}")
+        _observe_many(given, rule_base(), actionary, jobs=jobs, wait_s=wait, json=json, quiet=quiet)
+        return
     if live or device:
         if plot or set_ or on_unknown or fit:
             raise CaparError(
@@ -122,23 +152,46 @@ def observe(
         source = _Live(
             capture, device, rig, calibration, lead_in, speed, json, name, websocket, lsl_markers
         )
-        observation = _observe_live(
-            source, options.rule_base(profile, rules, actionary, steady=steady)
-        )
+        observation = _observe_live(source, rule_base())
         stored = _store(observation, actionary, name=name, wait_s=wait)
         if not json:
             typer.echo()
-            _print(observation, script=script, pars=pars)
+            _print(observation, script=script, pars=pars, quiet=quiet)
         typer.echo(stored, err=True, nl=bool(stored))
         return
     if websocket is not None or lsl_markers:
         raise CaparError("--websocket and --lsl-markers send events of --live; give --live as well")
     if not capture:
         raise CaparError("expected a CAPTURE, or --live with --device ADDRESS")
+    from capar_rules.authoring.user_rules import new_rules_folder
+
+    choice = on_unknown or (OnUnknown.ASK if options.can_ask() and not json else OnUnknown.KEEP)
+    base = rule_base()
+    trial, measurements, observe_by = _measured(capture, set_ or [], name, fit=fit, quiet=quiet)
+    observation = observe_by(base)
+    folder = new_rules_folder(rules, actionary=actionary)
+    if choice is OnUnknown.ASK and _ask_for_names(observation, folder):
+        observation = observe_by(rule_base())
+    elif choice is OnUnknown.FAIL:
+        _fail_on_unknown(observation)
+    # Files first: a reader of the output who stops early, as `head` does, ends the command.
+    if plot:
+        _draw(observation, trial, measurements, plot)
+    stored = _store(observation, actionary, name=name, wait_s=wait)
+    _print(observation, json=json, script=script, pars=pars, quiet=quiet)
+    typer.echo(stored, err=True, nl=bool(stored))
+
+
+def _measured(
+    capture: str, settings: list[str], name: str, *, fit: bool, quiet: bool
+) -> "tuple[Capture, Measurements, Callable[[Profile], Observation]]":
+    """A capture, what is measured of it, and what observes it by rules."""
     from extractors.readers.bundle.capture_toml import read_capture
 
-    base = options.rule_base(profile, rules, actionary, steady=steady)
     trial = read_capture(capture)
+    place = Path(capture)
+    if place.is_file() and place.suffix != ".toml" and not quiet:
+        typer.echo(f"{capture} is read as {place.parent / 'capture.toml'} says", err=True)
     if fit:
         from capar.body.body_fitting import fit_body, with_body_parts
 
@@ -146,25 +199,68 @@ def observe(
 
     # A mistake in the capture is reported before these are loaded, which takes longer.
     from capar.pipelines.observation import observe_measured
-    from capar_rules.authoring.user_rules import new_rules_folder
     from extractors.calibration import calibrate, set_values
     from extractors.measure import measure
 
-    measurements = measure(trial, set_values(calibrate(trial), set_) if set_ else None)
-    observation = observe_measured(trial, measurements, rules=base, name=name)
-    choice = on_unknown or (OnUnknown.ASK if options.can_ask() and not json else OnUnknown.KEEP)
-    folder = new_rules_folder(rules, actionary=actionary)
-    if choice is OnUnknown.ASK and _ask_for_names(observation, folder):
-        base = options.rule_base(profile, rules, actionary, steady=steady)
-        observation = observe_measured(trial, measurements, rules=base, name=name)
-    elif choice is OnUnknown.FAIL:
-        _fail_on_unknown(observation)
-    # Files first: a reader of the output who stops early, as `head` does, ends the command.
-    if plot:
-        _draw(observation, trial, measurements, plot)
-    stored = _store(observation, actionary, name=name, wait_s=wait)
-    _print(observation, json=json, script=script, pars=pars)
-    typer.echo(stored, err=True, nl=bool(stored))
+    measured = measure(trial, set_values(calibrate(trial), settings) if settings else None)
+    return trial, measured, lambda base: observe_measured(trial, measured, rules=base, name=name)
+
+
+def _means_many(place: str) -> bool:
+    """Whether a place is a pattern, or a folder that is no capture and has some below it."""
+    path = Path(place)
+    if path.is_dir():
+        return not (path / "capture.toml").is_file() and any(path.rglob("capture.toml"))
+    return not path.exists() and any(each in place for each in "*?[")
+
+
+def _observe_many(
+    patterns: list[str],
+    rules: "Profile",
+    actionary: str | None,
+    *,
+    jobs: int,
+    wait_s: float,
+    json: bool,
+    quiet: bool,
+) -> None:
+    """Print a line for each capture, and at the end what failed.
+
+    Raises:
+        CaparError: Some failed.
+    """
+    from capar.pipelines.many import observe_many
+    from extractors.readers.bundle.patterns import find_captures
+
+    places = find_captures(patterns)
+    failed = []
+    outcomes = observe_many(places, jobs=jobs, rules=rules, actionary=actionary, wait_s=wait_s)
+    for number, done in enumerate(outcomes, 1):
+        seen = done.observation
+        segments = seen.segments if seen else ()
+        unknown = sum(not each.known for each in segments)
+        row = {
+            "capture": done.place, "name": seen.capture if seen else done.known,
+            "segments": len(segments), "unknown": unknown,
+            "seconds": round(seen.duration_s, 3) if seen else None,
+            "known": bool(done.known), "error": done.error,
+        }  # fmt: skip
+        if seen:
+            told = f"{len(segments)} segments in {seen.duration_s:.2f} s"
+            told += f", {unknown} without a name" if unknown else ""
+        else:
+            told = "is kept already" if done.known else "FAILED"
+        if done.error:
+            failed.append((done.place, done.error))
+        if json:
+            typer.echo(codec.dumps(row, ensure_ascii=False))
+        elif not quiet:
+            typer.echo(f"{number}/{len(places)}  {done.place}: {told}")
+    if failed:
+        where = f" --actionary {actionary}" if actionary else ""
+        lines = [f"  capar observe {quote(place)}{where}\n    {error}" for place, error in failed]
+        head = f"{len(failed)} of {len(places)} captures failed; each alone:"
+        raise CaparError("\n".join([head, *lines]))
 
 
 def demo(
@@ -176,7 +272,7 @@ def demo(
     from importlib import resources
 
     with resources.as_file(resources.files("capar") / "demo" / "drink_from_mug") as bundle:
-        observe(str(bundle), name="DrinkFromMug", plot=plot)
+        observe([str(bundle)], name="DrinkFromMug", plot=plot)
 
 
 def _store(observation: "Observation", place: str | None, *, name: str, wait_s: float) -> str:
@@ -202,7 +298,14 @@ def _store(observation: "Observation", place: str | None, *, name: str, wait_s: 
     )
 
 
-def _print(observation: "Observation", *, json: bool = False, script: bool, pars: bool) -> None:
+def _print(
+    observation: "Observation",
+    *,
+    json: bool = False,
+    script: bool,
+    pars: bool,
+    quiet: bool = False,
+) -> None:
     if json:
         from capar.model.json_form import to_json
 
@@ -214,13 +317,13 @@ def _print(observation: "Observation", *, json: bool = False, script: bool, pars
     else:
         from capar.views.tables import par_text
 
-        _tables(observation)
+        _tables(observation, quiet=quiet)
         every = (observation.complex_par, *observation.upars, *observation.ipars)
         for par in every if pars else ():
             typer.echo(f"\n{par_text(par)}", nl=False)
 
 
-def _tables(observation: "Observation") -> None:
+def _tables(observation: "Observation", *, quiet: bool) -> None:
     """Tables for a terminal; plain aligned columns for anything else."""
     from capar.views.notices import note_lines
     from capar.views.tables import (
@@ -242,7 +345,7 @@ def _tables(observation: "Observation") -> None:
     unknown = (unknown_note(each) for each in observation.segments if not each.known)
     for line in (*joint_lines(observation), *force_lines(observation), *unknown):
         typer.echo(line)
-    for line in note_lines(observation.notices):
+    for line in () if quiet else note_lines(observation.notices):
         typer.echo(line, err=True)
 
 

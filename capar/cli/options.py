@@ -154,13 +154,15 @@ def confirm_new(actionary: str | None, *, new: bool) -> None:
     folder is missing.
 
     Raises:
-        FileError: It is likely a typing mistake, or the answer was no.
+        FileError: It is likely a typing mistake, a file, or the answer was no.
     """
     from difflib import get_close_matches
 
     from kb.store.stores import DATA_FOLDER, is_address
 
     place = opened(actionary)
+    if Path(place).is_file():
+        raise FileError(place, "is a file; an Actionary is a folder.", "Name a folder.")
     if new or is_address(place) or Path(place).exists():
         return
     folder = Path(place).absolute()

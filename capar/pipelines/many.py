@@ -1,0 +1,196 @@
+"""Many captures: observed by several processes, kept by one writer, taken up again after a kill."""
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from queue import Queue
+from typing import Self
+
+from capar import __version__
+from capar.model.errors import CaparError
+from capar.model.observation import Observation
+from capar.pipelines.observation import observe_measured
+from capar_rules.engine.profiles import DEFAULT, Profile, profile
+from extractors.measure import measure
+from extractors.readers.bundle.capture_toml import read_capture
+from extractors.readers.bundle.patterns import find_captures
+
+AHEAD = 2
+"""So many captures a process are observed before the first of them is kept: results take memory."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of one of many captures."""
+
+    place: str
+    observation: Observation | None = None
+    """None where it failed, or was known."""
+
+    known: str = ""
+    """The name under which the Actionary has it already, from the same files by the same rules."""
+
+    error: str = ""
+    """What was wrong with it; empty if nothing was."""
+
+
+Known = Mapping[str, tuple[str, str, tuple[str, ...]]]
+"""By name, what an Actionary holds: its rules, the program's version, its files' digests."""
+
+
+def observe_many(
+    captures: Iterable[str | Path],
+    *,
+    jobs: int = 1,
+    rules: Profile | str = DEFAULT,
+    actionary: str | Path | None = None,
+    wait_s: float = 0.0,
+) -> Iterator[Outcome]:
+    """Observe captures, in their order; what fails is told, and does not end the others.
+
+    With an Actionary each is kept when it is yielded, by this process alone, and one that is there
+    from the same files, by the same rules and version, is not observed again: what was killed goes
+    on where it was when it is started again.
+
+    Args:
+        captures: Patterns: folders, globs, FOLDER:TAKE, FOLDER:*.
+        jobs: How many processes observe; with 1 it is this one.
+        rules: A rule profile or its name.
+        actionary: The folder of an Actionary, or a server's address; None keeps nothing.
+        wait_s: How long to wait for another writer [s].
+
+    Raises:
+        CaparError: A pattern means no capture, the Actionary cannot be written, or a process died.
+    """
+    places = find_captures([str(each) for each in captures])
+    base = profile(rules) if isinstance(rules, str) else rules
+    if actionary is None:
+        yield from _outcomes(places, jobs, base, {})
+        return
+    from kb import Actionary
+    from kb.lookup.observations import source_files
+
+    with Actionary.open(actionary, wait_s=wait_s) as store:
+        known = {
+            each.name: (
+                each.rules,
+                each.version,
+                tuple(sorted(digest for _, digest in source_files(store.store, each.name))),
+            )
+            for each in store.observations()
+        }
+        for outcome in _outcomes(places, jobs, base, known):
+            try:
+                if outcome.observation is not None:
+                    store.add(outcome.observation)
+                yield outcome
+            except CaparError as error:  # another capture of its name is there
+                yield Outcome(outcome.place, error=str(error))
+
+
+def _outcomes(places: list[str], jobs: int, rules: Profile, known: Known) -> Iterator[Outcome]:
+    """The outcome of each place, in their order."""
+    if jobs <= 1 or len(places) <= 1:
+        yield from (_outcome(place, rules, known) for place in places)
+        return
+    with ExitStack() as stack:
+        idle: Queue[_Process] = Queue()
+        for _ in range(min(jobs, len(places))):
+            idle.put(stack.enter_context(_Process(rules, known)))
+        pool = ThreadPoolExecutor(min(jobs, len(places)))
+        stack.callback(pool.shutdown, wait=False, cancel_futures=True)
+
+        def observed(place: str) -> Outcome:
+            process = idle.get()
+            try:
+                return process.outcome(place)
+            finally:
+                idle.put(process)
+
+        running: deque[Future[Outcome]] = deque()
+        left = iter(places)
+        while True:
+            while len(running) < AHEAD * jobs and (place := next(left, "")):
+                running.append(pool.submit(observed, place))
+            if not running:
+                return
+            yield running.popleft().result()
+
+
+def _outcome(place: str, rules: Profile, known: Known) -> Outcome:
+    try:
+        capture = read_capture(place)
+        own = (rules.fingerprint, __version__, tuple(sorted(s.sha256 for s in capture.sources)))
+        if known.get(capture.name) == own:
+            return Outcome(place, known=capture.name)
+        return Outcome(place, observe_measured(capture, measure(capture), rules=rules))
+    except (CaparError, OSError) as error:
+        return Outcome(place, error=str(error))
+
+
+class _Process:
+    """A process that observes; it ends when its standard input does, as when we are killed."""
+
+    def __init__(self, rules: Profile, known: Known) -> None:
+        """Start it with the rules, and what need not be observed."""
+        command = "from capar.pipelines.many import serve; serve()"
+        environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "CAPAR_CORES": "1"}
+        self._process = subprocess.Popen(
+            [sys.executable, "-P", "-c", command],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment,
+        )  # fmt: skip
+        self._unsent: list[object] = [(rules, known)]
+
+    def __enter__(self) -> Self:
+        """Use it until it is left."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End it, whatever it is at."""
+        self._process.kill()
+        with suppress(BrokenPipeError):
+            self._process.communicate()
+
+    def outcome(self, place: str) -> Outcome:
+        """What becomes of a capture.
+
+        Raises:
+            CaparError: The process died of it.
+        """
+        assert self._process.stdout is not None
+        try:
+            self._send(place)
+            found: Outcome = pickle.load(self._process.stdout)
+        except (EOFError, BrokenPipeError, pickle.UnpicklingError):
+            raise CaparError(
+                f"the process that observed {place} died; was there too little memory? Start again "
+                "with fewer --jobs: what is kept is not observed again"
+            ) from None
+        return found
+
+    def _send(self, value: object) -> None:
+        assert self._process.stdin is not None
+        for each in (*self._unsent, value):
+            pickle.dump(each, self._process.stdin)
+        self._unsent.clear()
+        self._process.stdin.flush()
+
+
+def serve() -> None:
+    """Observe the captures that standard input names, and answer each on standard output."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it is the command that is interrupted
+    out = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # whatever a library prints is no answer
+    with suppress(EOFError, BrokenPipeError):
+        rules, known = pickle.load(sys.stdin.buffer)
+        while True:
+            pickle.dump(_outcome(pickle.load(sys.stdin.buffer), rules, known), out)
+            out.flush()
