@@ -51,9 +51,9 @@ def label(
     actionary: options.Beside = None,
     steady: options.Steady = None,
 ) -> None:
-    r"""Write what was observed as labels: segments, contacts, possessions and motions.
+    r"""Write what was observed as labels for other programs.
 
-    A segment has its name, more general names, objects and their kinds, what it reached, where
+    They are segments, contacts, possessions and motions, each a row or an annotation. A segment has its name, more general names, objects and their kinds, what it reached, where
     bodies are, a sentence and the rule that named it.
 
     \b
