@@ -53,8 +53,9 @@ def label(
 ) -> None:
     r"""Write what was observed as labels for other programs.
 
-    They are segments, contacts, possessions and motions, each a row or an annotation. A segment has its name, more general names, objects and their kinds, what it reached, where
-    bodies are, a sentence and the rule that named it.
+    They are segments, contacts, possessions and motions, each a row or an annotation. A segment
+    has its name, more general names, objects and their kinds, what it reached, where bodies are, a
+    sentence and the rule that named it.
 
     \b
         capar label 'study:*' -o labels.parquet --format parquet
