@@ -148,12 +148,15 @@ def measure_names() -> tuple[str, ...]:
     return tuple(name for name in table("anthropometry")["man"] if name != "age")
 
 
+READY_MADE = {"man": ("male", 30.0), "woman": ("female", 30.0), "child": ("male", CHILD)}
+"""Sex and age [years] of each ready-made agent."""
+
+
 def ready_made(name: str) -> Measures:
     """The adult ``man`` or ``woman`` or the nine-year-old ``child``, of median stature."""
-    kinds = {"man": ("male", 30.0), "woman": ("female", 30.0), "child": ("male", CHILD)}
-    if name not in kinds:
-        raise UnknownNameError("ready-made agent", name, kinds)
-    sex, age = kinds[name]
+    if name not in READY_MADE:
+        raise UnknownNameError("ready-made agent", name, READY_MADE)
+    sex, age = READY_MADE[name]
     median = table("anthropometry")[name]["stature"]["percentiles"][1]
     given = {"stature": median} if name == "child" else None
     return replace(estimate_measures(sex=sex, age=age, given=given), given=frozenset())

@@ -9,7 +9,15 @@ from typing import Annotated
 import typer
 from typer import Argument, Option
 
-from capar.cli.options import Json, Place, Wait, require_actionary, rule_words
+from capar.cli.options import (
+    Json,
+    Place,
+    Wait,
+    has_actionary,
+    opened,
+    require_actionary,
+    rule_words,
+)
 from capar.cli.output import answer, check_writable, emit
 from capar.model.errors import UnknownNameError
 
@@ -53,11 +61,21 @@ def agent_can(
 
 @agent.command("list")
 def list_agents(actionary: Place = None, json: Json = False) -> None:
-    """List every agent; one without a name is called by its capture."""
+    """List every agent; one without a name is called by its capture.
+
+    Where no Actionary is named and none is here: the ready-made agents of `capar regenerate`.
+    """
     from kb import Actionary
 
-    with Actionary.open(actionary, read_only=True) as opened:
-        found = list(opened.agents())
+    place = opened(actionary)
+    if not actionary and not has_actionary(place, named=place):
+        from capar.body.anthropometry import READY_MADE
+
+        typer.echo(f"{place} is no Actionary; agents that are ready-made:", err=True)
+        answer(list(READY_MADE), READY_MADE, json=json)
+        return
+    with Actionary.open(actionary, read_only=True) as book:
+        found = list(book.agents())
     answer(found, found, json=json)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from observations import drink_from_mug, pick_up_with_both_hands
-from shell import DEMO, capar, run
+from shell import DEMO, capar, refused, run
 
 from capar.model.errors import FileError, UnknownNameError
 from capar.model.observation import SegmentAddress
@@ -251,3 +251,12 @@ def test_a_store_without_its_table_of_contents_is_not_begun_anew(
     with pytest.raises(DamagedError, match="CURRENT is missing"):
         Actionary.open(place)
     assert sorted((place / DATA_FOLDER).iterdir()) == before
+
+
+def test_without_an_actionary_the_ready_made_agents_are_listed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("CAPAR_ACTIONARY", raising=False)
+    assert run("agent", "list").split() == ["man", "woman", "child"]
+    assert "no Actionary there" in refused("agent", "list", "--actionary", "none")
