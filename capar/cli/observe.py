@@ -338,7 +338,8 @@ def _tables(observation: "Observation", *, quiet: bool) -> None:
     )
 
     if sys.stdout.isatty():
-        console().print(segments_table(observation), steps_table(observation.complex_par))
+        table = segments_table(observation, width=console().width)
+        console().print(table, steps_table(observation.complex_par))
     else:
         for rows in (segment_rows(observation), step_rows(observation.complex_par)):
             typer.echo("\n".join(aligned(rows)) + "\n")

@@ -57,17 +57,25 @@ def step_rows(par: ComplexPar) -> tuple[tuple[str, ...], ...]:
     return (STEP_COLUMNS, *(_step_row(each, par.duration_s) for each in steps))
 
 
-def segments_table(observation: Observation) -> "Table":
-    """Segments for a terminal, a section for each link."""
-    rows = segment_rows(observation)[1:]
+NARROW = 100
+"""In a terminal of fewer columns segments are printed without their features."""
+
+
+def segments_table(observation: Observation, *, width: int = NARROW) -> "Table":
+    """Segments for a terminal of a width [columns], a section for each link."""
+    shown = [n for n, name in enumerate(SEGMENT_COLUMNS) if width >= NARROW or name != "features"]
+    rows = [[row[n] for n in shown] for row in segment_rows(observation)]
+    short = all(each.known for each in observation.segments)  # else a name has remarks beside it
+    names = {0, 3} if short and width < NARROW else {0}
     table = terminal_table(
-        SEGMENT_COLUMNS, rows, right={1, 2}, names={0}, title=observation.capture, empty=True
+        rows[0], rows[1:], right={1, 2}, names=names, title=observation.capture, empty=True
     )
-    table.caption = FEATURE_NOTE
+    table.caption = FEATURE_NOTE if width >= NARROW else None
     for link in observation.links:
         for segment in link.segments:
             style = None if segment.known else "yellow"
-            table.add_row(*map(_escaped, _segment_row(link, segment)), style=style)
+            cells = _segment_row(link, segment)
+            table.add_row(*(_escaped(cells[n]) for n in shown), style=style)
         table.add_section()
     addresses = table.columns[0]
     addresses.no_wrap = True

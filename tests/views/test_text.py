@@ -47,3 +47,11 @@ def test_a_table_cuts_no_name_however_narrow_the_terminal(columns: int) -> None:
     assert "…" not in out
     for each in seen.segments:
         assert f"{each.ee}/{each.index}" in out or columns < 80
+
+
+def test_at_eighty_columns_each_segment_is_one_line_with_its_address_and_name() -> None:
+    seen = drink_from_mug()
+    lines = shown(segments_table(seen, width=80), 80).splitlines()
+    for each in seen.segments:
+        (line,) = [line for line in lines if f"{each.ee}/{each.index} " in line]
+        assert f" {each.name} " in line
