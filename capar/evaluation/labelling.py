@@ -108,7 +108,8 @@ def _rows(seen: Observation, mapping: LabelMapping | None, words: Sequence[Any])
                 "label": own, "general": list(segment.general),
                 "goal": goals.get((link.ee, segment.last), ""),
                 "prepositions": [f"{a} {how} {b}" for how, a, b in segment.prepositions],
-                "sentence": segment_sentence(seen, segment, words=words), "rule": rules.get(segment.name, ""),
+                "sentence": segment_sentence(seen, segment, words=words),
+                "rule": rules.get(segment.name, ""),
             }  # fmt: skip
     for fact in seen.facts:
         if isinstance(fact, Touching):
