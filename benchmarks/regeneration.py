@@ -2,7 +2,9 @@
 
 ``python benchmarks/regeneration.py`` times the parts of two regenerations at 100 Hz; with ACTIONs,
 or ``all`` ten of the figures, it makes round trips of these, ``--scenes`` of each for each body;
-with ``--noisy`` of recordings with noise, and in the first scene without it for comparison.
+with ``--noisy`` of recordings with noise, and in the first scene without it for comparison. The
+table at the end says how many fingers closed onto what their hand holds, how deep a bone of them is
+inside of anything at any frame, and how far a finger is off what it closed on while it is held.
 """
 
 import argparse
@@ -15,6 +17,7 @@ from functools import lru_cache, partial
 from itertools import pairwise, product
 from multiprocessing import get_context
 
+import numpy as np
 from scene import ADDITIONS, REFERENCE_S
 
 from capar.body.scripted_actions import ACTIONS, action_capture
@@ -34,8 +37,13 @@ SEED = 7
 TIMED = (("drink", "child", 100.0), ("pour", "woman", 100.0))
 """Action, agent and frames a second."""
 
-Row = tuple[str, Counter[str], float]
-"""A trip in words, what came of it, and what it took [s]."""
+Closed = tuple[np.ndarray, np.ndarray]
+"""Grasps, fingers that close in them and all fingers; the deepest and the farthest one [mm]."""
+
+Row = tuple[str, Counter[str], float, Closed]
+"""A trip in words, what came of it, what it took [s], and how fingers closed."""
+
+FINGERS = "| action | grasps | fingers that close | deepest inside [mm] | farthest off [mm] |"
 
 
 def line(action: str, trip: Trip) -> str:
@@ -62,7 +70,25 @@ def made(action: str, number: int, agent: str, *, rate_hz: float, noisy: bool) -
     took_s = time.process_time() - began
     passed = trip.quality is not None and trip.quality.passed
     came = {"in reach": trip.quality is not None, "same PAR": trip.same_par, "every gate": passed}
-    return line(action, trip), Counter(came, both=trip.same_par and passed, asked=1), took_s
+    counts = Counter(came, both=trip.same_par and passed, asked=1)
+    return line(action, trip), counts, took_s, closed(trip)
+
+
+def closed(trip: Trip) -> Closed:
+    """How the fingers closed in a trip."""
+    if trip.quality is None or trip.motion is None:
+        return np.zeros(3, int), np.zeros(2)
+    grasps = [grasp for own in trip.motion.grasps.values() for grasp in own]
+    reaching, short = (sum(len(getattr(g, name)) for g in grasps) for name in ("reaching", "short"))
+    worst = [trip.quality.gate(f"fingers {name}").value for name in ("inside", "off")]
+    return np.array([len(grasps), reaching, reaching + short]), np.array(worst)
+
+
+def fingers(name: str, rows: list[Row]) -> str:
+    """A row of the table of fingers."""
+    grasps, reaching, every = np.sum([row[3][0] for row in rows], axis=0)
+    inside, off = np.max([row[3][1] for row in rows], axis=0)
+    return f"| {name} | {grasps} | {reaching} of {every} | {inside:.2f} | {off:.2f} |"
 
 
 def summary(name: str, rows: list[Row]) -> str:
@@ -81,6 +107,7 @@ def performed(actions: list[str], scenes: int, *, rate_hz: float, noisy: bool, j
     exec(ADDITIONS, {})
     scale = REFERENCE_S / (time.process_time() - began)
     print(f"processor time; on the reference machine it is x {scale:.2f}", flush=True)
+    table = list[str]()
     every: dict[bool, list[Row]] = {each: [] for each in ((False, True) if noisy else (False,))}
     with ExitStack() as stack:
         each_of = map
@@ -94,8 +121,11 @@ def performed(actions: list[str], scenes: int, *, rate_hz: float, noisy: bool, j
                 rows.append(row)
             print(summary(f"{action}, {'noisy' if noise else 'without noise'}", rows), flush=True)
             every[noise] += rows
+            table.append(fingers(f"{action}, {'noisy' if noise else 'without noise'}", rows))
     for noise, found in every.items():
         print(summary(f"all, {'noisy' if noise else 'without noise'}", found))
+        table.append(fingers(f"all, {'noisy' if noise else 'without noise'}", found))
+    print("\n".join([FINGERS, "|---|---|---|---|---|", *table]), flush=True)
 
 
 def timed(action: str, agent: str, rate_hz: float) -> str:

@@ -27,15 +27,16 @@ _KINDS = {
 }
 
 
-def body_spec(measures: Measures, *, prefix: str = "") -> mujoco.MjSpec:
+def body_spec(measures: Measures, *, prefix: str = "", fingers: bool = False) -> mujoco.MjSpec:
     """The specification of a body standing on z = 0, looking along x, its arms down.
 
-    Every name is led by a prefix, so that several bodies share a scene.
+    Every name is led by a prefix, so that several bodies share a scene. Hands have fingers that
+    bend as one, or five each.
     """
     spec = mujoco.MjSpec()
     spec.modelname = f"{prefix}body"
     spec.compiler.degree = False
-    segments = skeleton(measures)
+    segments = skeleton(measures, fingers=fingers)
     weights = inertias(measures, segments)
     bodies: dict[str, Any] = {"": spec.worldbody}
     for name, segment in segments.items():
@@ -46,7 +47,9 @@ def body_spec(measures: Measures, *, prefix: str = "") -> mujoco.MjSpec:
         if not segment.parent:
             body.add_freejoint(name=prefix + ROOT)
         bodies[name] = body
-    for row in _with_left(table("joints")["joint"]):
+    for row in _with_left([*table("joints")["joint"], *finger_joints()]):
+        if row["body"] not in segments:
+            continue
         young, share = np.radians(row.get("child", row["range"])), measures.adult_share
         bodies[row["body"]].add_joint(
             name=prefix + row["name"],
@@ -57,6 +60,8 @@ def body_spec(measures: Measures, *, prefix: str = "") -> mujoco.MjSpec:
             armature=ARMATURE,
         )
     for row in site_rows():
+        if row["body"] not in segments:
+            continue
         base, axes = _site_base(row, measures, segments[row["body"]]), row.get("axes")
         bodies[row["body"]].add_site(
             name=prefix + row["name"],
@@ -94,6 +99,25 @@ def _with_left(right: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
             names = {key: mirrored(row[key]) for key in ("body", "name")}
             out.append({**row, **names, "axis": [-x, y, -z]})
     return out
+
+
+def finger_joints() -> list[dict[str, Any]]:
+    """The hinges of the right hand's five fingers, like rows of the table of joints."""
+    out = []
+    for finger, row in table("fingers")["finger"].items():
+        axis = [0, 1, 0] if finger == "thumb" else [1, 0, 0]
+        if "opposition_deg" in row:
+            out.append(_finger_joint(finger, 1, "opposition", [0, 0, 1], row["opposition_deg"]))
+        for number, limits in enumerate(row["range_deg"], 1):
+            out.append(_finger_joint(finger, number, f"flexion_{number}", axis, limits))
+    return out
+
+
+def _finger_joint(
+    finger: str, number: int, name: str, axis: list[int], limits: list[float]
+) -> dict[str, Any]:
+    row = {"body": f"right_{finger}_{number}", "name": f"right_{finger}_{name}"}
+    return {**row, "axis": axis, "range": limits}
 
 
 def site_rows() -> list[dict[str, Any]]:
@@ -134,11 +158,17 @@ class Human:
 
     measures: Measures
     model: mujoco.MjModel
+    fingers: bool = False  #: Whether hands have five fingers each, else they bend as one
 
     @classmethod
-    def of(cls, measures: Measures) -> "Human":
+    def of(cls, measures: Measures, *, fingers: bool = False) -> "Human":
         """The body with these measures."""
-        return cls(measures, body_spec(measures).compile())
+        return cls(measures, body_spec(measures, fingers=fingers).compile(), fingers)
+
+    @property
+    def segments(self) -> Mapping[str, Segment]:
+        """Its segments, standing."""
+        return skeleton(self.measures, fingers=self.fingers)
 
     @cached_property
     def joints(self) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from capar.body.anthropometry import Measures, measures_of
+from capar.body.anthropometry import Measures, measures_of, table
 from capar.body.human import ROOT_SIZE, Human
 from capar.body.inverse_kinematics import DirectionTask, Solver, joint_limits
 from capar.body.scripts import minimum_jerk
@@ -24,7 +24,6 @@ from capar.body.sensors import (
     places,
     target,
 )
-from capar.body.skeleton import skeleton
 from capar.model import geometry
 from capar.model.capture import Capture, Stream
 from capar.model.errors import CaparError
@@ -57,7 +56,13 @@ LIMIT_MARGIN = float(np.radians(0.1))  # a hinge this near its limit counts as a
 #: How the names of segments of the lower body end
 LOWER = ("pelvis", "thigh", "shank", "foot", "toes")
 #: Segments that are taken to be seen with those that they are on
-ENDS = ("fingers", "fingertips", "thumb", "toes", "eye")
+ENDS = (
+    "fingers",
+    "thumb",
+    *(f"{finger}_1" for finger in table("fingers")["finger"]),
+    "toes",
+    "eye",
+)
 #: What sensors are called besides the names of their places
 OTHER_NAMES = {"pelvis": "l5", "sacrum": "l5", "neck_base": "neck"}
 #: The measures that decide where joints are, and are estimated from a motion
@@ -230,7 +235,7 @@ class Fit:
     @property
     def unrecorded(self) -> tuple[str, ...]:
         """Segments of which nothing is followed, on them or beyond them from the pelvis."""
-        parents = {name: one.parent for name, one in skeleton(self.human.measures).items()}
+        parents = {name: one.parent for name, one in self.human.segments.items()}
         seen: set[str] = set()
         for followed in self.segments.values():
             above = followed
@@ -238,7 +243,8 @@ class Fit:
                 seen.add(above)
                 above = parents[above]
         ends = {name for name in parents if without_side(name) in ENDS and parents[name] in seen}
-        ends |= {name for name in parents if parents[name] in ends}
+        for _ in range(2):
+            ends |= {name for name in parents if parents[name] in ends}
         return tuple(name for name in parents if name not in seen | ends)
 
     @property

@@ -85,15 +85,36 @@ def _head(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
 
 
 def _hand(m: Measures, segments: Mapping[str, Segment]) -> Iterator[Form]:
+    """A palm, and what there is: fingers that bend as one, and a thumb; or five fingers."""
     long = m["hand_length"]
     for name, kind, wide, thick in (
         ("right_hand", "box", *PALM),
         ("right_fingers", "box", 0.205, 0.052),
         ("right_fingertips", "ellipsoid", 0.175, 0.045),
     ):
+        if "right_fingers" not in segments:
+            break
         along = segments[name].tip - segments[name].origin
         sizes = np.array([wide * long, thick * long, 0.5 * abs(along[2]) + 0.02 * long])
         yield Form(name, kind, 0.5 * along, sizes, "skin")
+    for finger, row in (
+        table("fingers")["finger"].items() if "right_fingers" not in segments else ()
+    ):
+        knuckle = row["base"]
+        if finger != "thumb":  # its part of the palm
+            along = np.array([0.0, 0.0, knuckle[2]]) * long
+            half = np.array([PALM[1] * long, 0.5 * abs(along[2]), 0.0])
+            at = np.array([knuckle[0], 0.0, 0.0]) * long
+            yield Form("right_hand", "capsule", at + 0.5 * along, half, "skin", along)
+        for number, share in enumerate(row["radii"], 1):
+            if (bone := segments.get(f"right_{finger}_{number}")) is not None:
+                radius = share * long
+                cut = radius / bone.length if number == len(row["radii"]) else 0.0
+                along = (1.0 - cut) * (bone.tip - bone.origin)
+                half = np.array([radius, 0.5 * float(np.linalg.norm(along)), 0.0])
+                yield Form(bone.name, "capsule", 0.5 * along, half, "skin", along)
+    if "right_thumb" not in segments:
+        return
     along = segments["right_thumb"].tip - segments["right_thumb"].origin
     half = np.array([0.055 * long, 0.5 * float(np.linalg.norm(along)), 0.0])
     yield Form("right_thumb", "capsule", 0.5 * along, half, "skin", along)

@@ -30,6 +30,9 @@ DOWN = np.array([0.0, 0.0, -1.0])
 
 HEEL = 0.26  # how far the heel lies behind the ankle [share of the foot's length] (estimate)
 
+#: Segments of the right hand whose fingers bend as one, which five fingers take the place of
+MITTEN = ("right_fingers", "right_fingertips", "right_thumb")
+
 #: How far the ball of the foot lies before the ankle [share of the foot's length] (estimate)
 BALL = 0.47
 
@@ -49,9 +52,16 @@ class Segment:
         return float(np.linalg.norm(self.tip - self.origin))
 
 
-def skeleton(measures: Measures) -> Mapping[str, Segment]:
-    """Every segment by name, each after its parent; x forward, y left, z up, feet on z = 0."""
+def skeleton(measures: Measures, *, fingers: bool = False) -> Mapping[str, Segment]:
+    """Every segment by name, each after its parent; x forward, y left, z up, feet on z = 0.
+
+    With ``fingers``, hands have five of three bones each, ``right_index_1`` to ``right_index_3``.
+    """
     right, flip = _right_side(measures), np.array([1.0, -1.0, 1.0])
+    if fingers:
+        wrist = next(each.origin for each in right if each.name == "right_hand")
+        bones = _fingers(measures["hand_length"], wrist)
+        right = [*(each for each in right if each.name not in MITTEN), *bones]
     left = (
         Segment(mirrored(s.name), mirrored(s.parent), s.origin * flip, s.tip * flip) for s in right
     )
@@ -114,6 +124,20 @@ def _right_side(m: Measures) -> list[Segment]:
     ]
 
 
+def _fingers(hand_m: float, wrist: Float[np.ndarray, "3"]) -> list[Segment]:
+    """The bones of the right hand's fingers, open."""
+    out, bones = [], table("fingers")
+    for finger, row in bones["finger"].items():
+        at, parent = wrist + hand_m * np.array(row["base"]), "right_hand"
+        turns = np.radians(row["outwards_deg"])
+        for number, (bone_mm, turn) in enumerate(zip(row["bones_mm"], turns, strict=True), 1):
+            way = np.array([np.sin(turn), 0.0, -np.cos(turn)])
+            tip = at + hand_m * bone_mm / bones["hand_mm"] * way
+            out.append(Segment(f"right_{finger}_{number}", parent, at, tip))
+            at, parent = tip, out[-1].name
+    return out
+
+
 LIMBS = ("upper_arm", "forearm", "hand", "thigh", "shank", "foot")
 TRUNK = ("lower_trunk", "middle_trunk", "upper_trunk")  # from the hips upwards
 
@@ -144,9 +168,14 @@ def inertias(measures: Measures, segments: Mapping[str, Segment]) -> Mapping[str
         length, start, along = _extent(part, measures, segment)
         moments = row["mass"] * (row["radii"] * length) ** 2
         out[segment.name] = float(row["mass"]), start + row["centre"] * length * along, moments
-    for part, row in table("inertia")["parts"].items():
-        _part_off(out, segments, f"right_{part}", HOLDERS[row["of"]],
-                  row["share"] * float(rows[row["of"]]["mass"]))  # fmt: skip
+    parts = {f"right_{part}": row for part, row in table("inertia")["parts"].items()}
+    if "right_fingers" not in segments:  # the same mass, evenly on the bones of five fingers
+        share = sum(parts.pop(name)["share"] for name in MITTEN)
+        bones = [name for name in segments if is_right(name) and name[-1].isdigit()]
+        parts |= {name: {"of": "hand", "share": share / len(bones)} for name in bones}
+    for part, row in parts.items():
+        mass = row["share"] * float(rows[row["of"]]["mass"])
+        _part_off(out, segments, part, HOLDERS[row["of"]], mass)
     for name, (mass, centre, moments) in list(out.items()):
         if is_right(name):
             out[mirrored(name)] = mass, centre * [1.0, -1.0, 1.0], moments

@@ -36,16 +36,21 @@ def fit(
     motion.
     """
     from capar.body.body_fitting import fit_body, fit_warnings
+    from capar.body.grasping import fingered_fit
     from capar.export.bvh import bvh_text
     from capar.export.c3d import c3d_bytes
     from capar.export.glb import glb_bytes
     from capar.export.motion_tables import csv_text, mjcf_text, write_npz
+    from capar.pipelines.observation import observe
     from extractors.readers.bundle.capture_toml import read_capture
 
     recorded = read_capture(capture)
     made = fit_body(capture, recorded)
     warnings = fit_warnings(capture, recorded, made)
-    motion = (made.human, made.times, made.motion)
+    if any((bvh, glb, c3d, npz, csv, mjcf)):
+        found = observe(recorded).facts if recorded.objects else ()
+        shown = fingered_fit(made, recorded, found)
+        motion = (shown.human, shown.times, shown.motion)
     if bvh:
         save(bvh, bvh_text(*motion))
     if glb:
@@ -57,7 +62,7 @@ def fit(
     if csv:
         save(csv, csv_text(*motion))
     if mjcf:
-        save(mjcf, mjcf_text(made.human))
+        save(mjcf, mjcf_text(shown.human))
     value = _residuals(made)
     answer({**value, "warnings": warnings}, json=json)
 

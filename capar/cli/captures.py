@@ -180,7 +180,8 @@ def view(
     Use it before anything else on a capture.toml of your own: wrong units, axes and mounts are
     seen at once. Under the bodies a timeline shows what was observed.
     """
-    from capar.views.viewer.stage import stage
+    from capar.pipelines.observation import observe
+    from capar.views.viewer.stage import stage, virtual_hands, with_fingers
     from extractors.readers.bundle.capture_toml import read_capture
 
     if at is not None and png is None:
@@ -188,23 +189,27 @@ def view(
     if html is None and png is None:
         raise CaparError("nothing to write: give --html FILE, or --png FILE with --at SECONDS")
     trial = read_capture(capture)
-    shown = stage(trial, at_s=at)
+    shown, timeline = stage(trial, at_s=at), html is not None and not only_bodies
+    hands = any(True for _ in virtual_hands(trial))
+    found = observe(trial, rules=rule_base(profile, rules)) if timeline or hands or fit else None
+    facts = found.facts if found else ()
+    shown = with_fingers(shown, trial, facts)
     if fit:
         from capar.body.body_fitting import fit_body
+        from capar.body.grasping import fingered_fit
         from capar.views.viewer.stage import with_mannequin
 
-        shown = with_mannequin(shown, fit_body(capture, trial))
+        made = fingered_fit(fit_body(capture, trial), trial, facts)
+        shown = with_mannequin(shown, made)
     if png is not None:
         from capar.views.viewer.snapshot import snapshot
 
         moment = at if at is not None else float(shown.times.mean())
         save(png, lambda draft: snapshot(shown, moment, draft), "drew")
     if html is not None:
-        from capar.pipelines.observation import observe
         from capar.views.viewer.web_page import web_page
 
-        found = None if only_bodies else observe(trial, rules=rule_base(profile, rules))
-        save(html, web_page(shown, found))
+        save(html, web_page(shown, found if timeline else None))
         typer.echo("open it in a browser", err=True)
 
 

@@ -7,7 +7,6 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from capar.body.human import Human, Poses, poses_of
-from capar.body.skeleton import skeleton
 
 UNIT_M = 0.01
 """Metres per unit of the file [m]."""
@@ -51,7 +50,7 @@ def _joint(human: Human, poses: Poses, number: int, depth: int) -> Iterator[str]
     for child in children:
         yield from _joint(human, poses, child, depth + 1)
     if not children:
-        bone = skeleton(human.measures)[name]
+        bone = human.segments[name]
         yield f"{pad}  End Site"
         yield f"{pad}  {{"
         yield f"{pad}    OFFSET {_text(bone.tip - bone.origin)}"

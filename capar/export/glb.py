@@ -13,7 +13,6 @@ from jaxtyping import Float
 from capar.body.anthropometry import table
 from capar.body.human import Human, Poses, poses_of
 from capar.body.shapes import Form, form_mesh, forms, joined
-from capar.body.skeleton import skeleton
 
 FLOAT, UNSIGNED = 5126, 5125
 """Kinds of numbers in glTF."""
@@ -128,7 +127,7 @@ def _meshes(
         for name, colour in colours.items()
     ]
     parts: dict[str, dict[str, list[Form]]] = {}
-    for form in forms(human.measures, skeleton(human.measures)):
+    for form in forms(human.measures, human.segments):
         parts.setdefault(form.body, {}).setdefault(form.colour, []).append(form)
     meshes = []
     for name, by_colour in parts.items():

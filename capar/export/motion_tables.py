@@ -53,6 +53,6 @@ def write_npz(
 
 def mjcf_text(human: Human) -> str:
     """The body as a MuJoCo model."""
-    spec = body_spec(human.measures)
+    spec = body_spec(human.measures, fingers=human.fingers)
     spec.compile()
     return str(spec.to_xml())

@@ -24,9 +24,9 @@ NEAR_M = 0.08  # Larger distances are not measured [m].
 HOLLOW = 0.98  # An object that fills a smaller share of its hull is hollow [1].
 DIFFERENCE_M = 1e-6  # Step of a difference quotient of a distance [m].
 
-SAMPLES, SPACING_M, SHAPES = 4000, 0.008, 32
-"""Points on the surface of a hollow object, at least, how far apart they are on a large one, and
-how many surfaces are kept."""
+SAMPLES, SPACING_M, FINE_M, SHAPES = 4000, 0.008, 0.003, 32
+"""Points on the surface of a hollow object, at least, how far apart they are on a large one, also
+where fingers are measured [m], and how many surfaces are kept."""
 
 
 @dataclass(frozen=True, order=True)
@@ -43,7 +43,7 @@ class Surroundings:
 
     def __init__(self, human: Human, scene: Scene) -> None:
         self.scene = scene
-        spec = body_spec(human.measures)
+        spec = body_spec(human.measures, fingers=human.fingers)
         for name, thing in scene.things.items():
             hull = trimesh.convex.convex_hull(np.array(thing.shape.vertices))
             mesh = spec.add_mesh(name=f"mesh_{name}")
@@ -78,7 +78,8 @@ class Surroundings:
         """Shapes of the body, each with an object that stops it."""
 
         self.watched = self.shapes(self.pairs)
-        self.hollow = {n: _surface_points(t.shape) for n, t in scene.things.items()}
+        spacing_m = FINE_M if human.fingers else SPACING_M
+        self.hollow = {n: _surface_points(t.shape, spacing_m) for n, t in scene.things.items()}
         self.planes = {}  # normals and offsets of the faces of hulls, each in its geom's frame
         for geom in things:
             mesh = self.model.mesh(int(self.model.geom_dataid[geom]))
@@ -102,14 +103,14 @@ class Surroundings:
             self.data.mocap_pos[self.bodies[name]] = pose[4:]
         mujoco.mj_kinematics(self.model, self.data)
 
-    def near(self, parts: Iterable[str] | None = None) -> list[Pair]:
+    def near(self, parts: Iterable[str] | None = None, within_m: float = NEAR_M) -> list[Pair]:
         """Distances of parts of the body, or of all, from the objects near them."""
         wanted, out = None if parts is None else set(parts), []
-        for row in np.flatnonzero(self.at_least(self.watched) < NEAR_M):
+        for row in np.flatnonzero(self.at_least(self.watched) < within_m):
             geom, name = self.pairs[row]
             if wanted is None or self.parts[geom] in wanted:
                 found = self.gap(geom, name)
-                if found < NEAR_M:
+                if found < within_m:
                     out.append(Pair(found, self.parts[geom], name))
         return out
 
@@ -232,13 +233,13 @@ def _depths(
 
 
 @lru_cache(maxsize=SHAPES)
-def _surface_points(shape: Shape) -> KDTree | None:
+def _surface_points(shape: Shape, spacing_m: float = SPACING_M) -> KDTree | None:
     """Points on a hollow shape's surface; None where its hull is its shape."""
     mesh = trimesh.Trimesh(np.array(shape.vertices), np.array(shape.faces), process=False)
     if abs(mesh.volume) > HOLLOW * mesh.convex_hull.volume:
         return None
     points, _ = trimesh.sample.sample_surface(
-        mesh, max(SAMPLES, round(mesh.area / SPACING_M**2)), seed=0
+        mesh, max(SAMPLES, round(mesh.area / spacing_m**2)), seed=0
     )
     return KDTree(np.concatenate([np.array(shape.vertices), np.array(points)]))
 

@@ -1,11 +1,17 @@
 """The motion of a whole body along a plan, by inverse kinematics frame by frame."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
 
+from capar.body.grasping import CLOSE_S, Grasp, fingered, flexions, hand_grasps
+from capar.body.human import Human
+from capar.model.geometry import transforms
 from capar.regeneration.collisions import ClearTask, Surroundings
+from capar.regeneration.holds import hand_spans
 from capar.regeneration.planning import Draft, Plan
 from capar.regeneration.solving import Solver, Targets, vectors
 
@@ -39,6 +45,37 @@ class Motion:
 
     plan: Plan
     postures: Float[np.ndarray, "frames posture"]
+
+    @cached_property
+    def grasps(self) -> Mapping[str, tuple[Grasp, ...]]:
+        """How the fingers of each hand close on what it holds."""
+        plan, out = self.plan, {}
+        things = {n: (t.shape, plan.things[n]) for n, t in plan.scene.things.items()}
+        sites = plan.human.sites(self.postures, [f"{side}_hand" for side in plan.hands])
+        for side in plan.hands:
+            hand = transforms(*sites[f"{side}_hand"])
+            found = hand_grasps(plan.human.measures, side, hand, things, self._spans(side))
+            out[side] = tuple(found)
+        return out
+
+    def _spans(self, side: str) -> Iterator[tuple[int, int, frozenset[str]]]:
+        """When a hand's fingers are closed on what; open when it throws and when it catches."""
+        source = self.plan.source
+        opens = round(CLOSE_S * source.rate_hz)
+        holds = [hold for hold in source.holds if hold.side == side]
+        for span, names in hand_spans(holds, source.co_held):
+            thrown = any((t.side, t.first) == (side, span.last) for t in source.throws)
+            caught = any((t.catcher, t.last) == (side, span.first) for t in source.throws)
+            first, last = span.first + opens * caught, span.last - opens * thrown
+            if first <= last:
+                yield first, last, names
+
+    @cached_property
+    def fingered(self) -> tuple[Human, Float[np.ndarray, "frames posture"]]:
+        """The body with five fingers on each hand, and its postures."""
+        frames, rate_hz = len(self.postures), self.plan.source.rate_hz
+        hands = {side: flexions(frames, rate_hz, own) for side, own in self.grasps.items()}
+        return fingered(self.plan.human, self.postures, hands)
 
 
 def perform_plan(plan: Plan, guide: Guide | None = None) -> Motion:

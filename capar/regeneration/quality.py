@@ -26,6 +26,7 @@ LEAVING_S = 0.3
 """So long before and after a hold a hand may be near what it holds and what stands beside [s]."""
 
 TOLD_M = 0.0005  # Objects that are deeper inside each other at first are reported [m].
+OFF_M = 0.01  # Larger distances of fingers from objects are not measured [m].
 MOVING_M = 0.05  # A shorter path has no profile of speed [m].
 
 
@@ -120,6 +121,7 @@ def quality(motion: Motion) -> Quality:
     """Verify a motion at every frame."""
     plan, hands = motion.plan, performed_hands(motion)
     contacts, told = _contact_gates(motion)
+    finger_gates, short = _finger_gates(motion)
     feet = plan.human.sites(motion.postures, ["right_foot", "left_foot"])
     slid = (worst_of(_gone(spots), name) for name, (spots, _) in feet.items())
     gates = (
@@ -127,6 +129,7 @@ def quality(motion: Motion) -> Quality:
         *_guide_gates(plan, hands),
         *_throw_gates(plan, hands),
         *contacts,
+        *finger_gates,
         within("feet", max(slid, key=lambda worst: worst[0]), 3.0),
         *joint_gates(plan.human, motion.postures, plan.source.rate_hz),
         _still_gate(plan),
@@ -134,7 +137,7 @@ def quality(motion: Motion) -> Quality:
         *_borne_gates(plan),
         *_together_gates(plan, hands),
     )
-    return Quality(gates, told)
+    return Quality(gates, (*told, *short))
 
 
 def _gone(spots: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
@@ -233,9 +236,9 @@ def _throw_gates(plan: Plan, hands: Mapping[str, RigidTransform]) -> Iterator[Ga
 def _contact_gates(motion: Motion) -> tuple[list[Gate], tuple[Measure, ...]]:
     """Penetration of anything, and how far free hands keep from what they do not touch.
 
-    A thumb is not posed, and its mannequin's base stands out from the palm: what it cuts of the
-    object that its hand takes is reported apart, and so is what objects cut of each other as they
-    stand at first, which is counted from there.
+    Here hands have fingers that bend as one: those that close, and the thumb, have a gate of their
+    own. What objects cut of each other as they stand at first is reported apart and counted from
+    there.
     """
     plan, deepest = motion.plan, list[tuple[Pair, int]]()
     around = Surroundings(plan.human, plan.scene)
@@ -244,7 +247,7 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], tuple[Measure, ...]]:
     first_m = {frozenset((pair.part, pair.thing)): pair.distance_m for pair in sunk}
     things = {name: vectors(path) for name, path in plan.things.items()}
     span = LEAVING_S * plan.source.rate_hz
-    nearest, thumbs = list[tuple[Pair, int]](), list[tuple[Pair, int]]()
+    nearest = list[tuple[Pair, int]]()
     for frame, posture in enumerate(motion.postures):
         around.place(posture, {n: rows[frame] for n, rows in things.items()})
         taken = {
@@ -256,7 +259,6 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], tuple[Measure, ...]]:
         for pair in around.near():
             side = pair.part.partition("_")[0]
             if pair.part.endswith("_thumb") and (side, pair.thing) in taken:
-                thumbs.append((pair, frame))
                 continue
             deepest.append((pair, frame))
             if is_hand(pair.part) and side in plan.hands and side not in busy:
@@ -270,9 +272,7 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], tuple[Measure, ...]]:
         distance_gate("penetration", -1.0, min(deepest, default=far)),
         distance_gate("free hand clear", 10.0, min(nearest, default=far)),
     ]
-    pair, frame = min(thumbs, default=far)
-    bodies = f"{pair.part}, {pair.thing}"
-    told = [Measure("thumb and what it holds", 1e3 * pair.distance_m, "mm", frame, bodies)]
+    told = list[Measure]()
     for pair in sunk:
         if pair.distance_m < -TOLD_M:
             names = f"{pair.part}, {pair.thing}"
@@ -280,6 +280,40 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], tuple[Measure, ...]]:
                 Measure("inside each other at first", 1e3 * pair.distance_m, "mm", 0, names)
             )
     return gates, tuple(told)
+
+
+def _finger_gates(motion: Motion) -> tuple[list[Gate], list[Measure]]:
+    """Fingers that close on what a hand holds touch it, and none is deeper inside anything.
+
+    Of the body with five fingers on each hand. Fingers that do not reach what the hand holds stay
+    open, and are reported. None where nothing is held.
+    """
+    grasps, plan = [grasp for own in motion.grasps.values() for grasp in own], motion.plan
+    if not grasps:
+        return [], []
+    human, postures = motion.fingered
+    around, inside, off = Surroundings(human, plan.scene), [NONE], [NONE]
+    things = {name: vectors(path) for name, path in plan.things.items()}
+    bones = [part for part in set(around.parts.values()) if part[-1].isdigit()]
+    for frame, posture in enumerate(postures):
+        around.place(posture, {n: rows[frame] for n, rows in things.items()})
+        now = (grasp for grasp in grasps if grasp.first <= frame <= grasp.last)
+        held = {finger: grasp.things for grasp in now for finger in grasp.reaching}
+        gaps = dict.fromkeys(held, OFF_M)
+        for pair in around.near(bones, OFF_M):
+            inside.append((-pair.distance_m, frame, f"{pair.part}, {pair.thing}"))
+            finger = pair.part[:-2]
+            if pair.thing in held.get(finger, ()):
+                gaps[finger] = min(gaps[finger], pair.distance_m)
+        off += [(gap_m, frame, f"{one}, {' '.join(held[one])}") for one, gap_m in gaps.items()]
+    reaching, short = (
+        [name for grasp in grasps for name in getattr(grasp, which)]
+        for which in ("reaching", "short")
+    )
+    unit, away = f"of {len(reaching + short)}", ", ".join(sorted(set(short)))
+    told = [Measure("fingers that close", float(len(reaching)), unit, -1, away and f"not {away}")]
+    gates = [within("fingers inside", max(inside), 2.0), within("fingers off", max(off), 2.0)]
+    return gates, told
 
 
 def is_hand(part: str) -> bool:

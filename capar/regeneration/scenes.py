@@ -15,8 +15,8 @@ from capar.model.capture import Shape, TagType
 from capar.model.errors import CaparError, FileError
 
 FEET = ("_foot", "_toes")
-LOWER_ARMS = ("_hand", "_fingers", "_fingertips", "_thumb", "_forearm")
-"""How the names of these parts of the body end."""
+LOWER_ARMS = ("_hand", "_fingers", "_fingertips", "_thumb", "_forearm", "_1", "_2", "_3")
+"""How the names of these parts of the body end; bones of fingers are numbered."""
 
 ON_M = 0.02  # An object whose lowest point is this near above another one's top stands on it [m].
 

@@ -229,7 +229,8 @@ def _with_body(made: Made, times: np.ndarray) -> tuple[StagedBody, ...]:
     """The performing body at some times."""
     motion = made.done.motion
     nearest = np.abs(times[:, None] - np.array(motion.plan.source.times)[None]).argmin(axis=1)
-    return body_parts(motion.plan.human, np.asarray(motion.postures)[nearest])
+    human, postures = motion.fingered
+    return body_parts(human, postures[nearest])
 
 
 def _gate_row(gate: Gate, source: Source) -> tuple[str, ...]:

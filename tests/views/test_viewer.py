@@ -18,11 +18,14 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.image import imread
+from scipy.spatial.transform import Rotation
 
+from capar.body.scripted_actions import action_capture
 from capar.cli import main
+from capar.model.facts import Touching
 from capar.pipelines.observation import observe
 from capar.views.viewer.snapshot import Box, meet, place_labels, snapshot
-from capar.views.viewer.stage import stage
+from capar.views.viewer.stage import stage, with_fingers
 from capar.views.viewer.web_page import web_page
 
 DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"
@@ -93,6 +96,34 @@ def test_the_page_asks_nothing_of_a_network_and_is_the_same_each_time(capture, p
     addresses = set(re.findall(r"\bhttps?://[\w./-]+", page))
     assert addresses == {"http://www.w3.org/1999/xhtml"}
     assert page == web_page(stage(capture), observe(capture))
+
+
+def test_hands_of_virtual_bodies_have_fingers_that_close_on_what_they_touch():
+    capture = action_capture("touch", rate_hz=30.0)
+    found = observe(capture)
+    shown = with_fingers(stage(capture), capture, found.facts)
+    bones = {body.name: body for body in shown.bodies if body.kind == "finger"}
+    assert len(bones) == 30
+    contact = next(
+        fact for fact in found.facts if isinstance(fact, Touching) and fact.other == "crate"
+    )
+    crate, frame = capture.tag_object("crate"), (contact.first + contact.last) // 2
+    top = crate.stream.positions[frame, 2] + crate.shape.bounds[1, 2]
+    lowest = {}
+    for name in ("right_index_3", "right_little_3", "left_index_3"):
+        turn = Rotation.from_quat(bones[name].orientations[frame], scalar_first=True)
+        spots = turn.apply(np.array(bones[name].shape.vertices)) + bones[name].positions[frame]
+        lowest[name] = spots[:, 2].min() - top
+    assert -0.002 < lowest["right_index_3"] < 0.002
+    assert -0.002 < lowest["right_little_3"] < 0.002
+    assert [body.label for body in shown.bodies][:3] == [
+        body.label for body in stage(capture).bodies
+    ][:3]
+
+
+def test_recorded_hands_are_shown_as_they_are(capture):
+    shown = stage(capture)
+    assert with_fingers(shown, capture, observe(capture).facts).bodies == shown.bodies
 
 
 def test_bodies_without_surfaces_and_without_an_observation_are_shown_too(capture, tmp_path):

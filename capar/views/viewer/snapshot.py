@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from capar.model.errors import FileError
 from capar.views.lettering import POINTS_PER_INCH, width_in
-from capar.views.viewer.stage import Stage, StagedBody, is_ground, world_bounds
+from capar.views.viewer.stage import UNNAMED, Stage, StagedBody, is_ground, world_bounds
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -194,7 +194,7 @@ def _labels(
     """Names of bodies, clear of each other and of what is small, with lines to their bodies."""
     kinds = [body.kind for body in known]
     crowded = sum(kind in ("sensor", "looks") for kind in kinds) > MOST_NAMES
-    left_out = {"body", "sensor", "looks"} if crowded else {"body"}
+    left_out = {*UNNAMED, "sensor", "looks"} if crowded else {*UNNAMED}
     named = [index for index, kind in enumerate(kinds) if kind not in left_out]
     page = SIZE_IN[0], SIZE_IN[1] * PAINTED
     corner = np.array([axes.get_xlim()[0], axes.get_ylim()[0]])

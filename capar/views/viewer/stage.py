@@ -1,19 +1,21 @@
 """What is shown of a capture: each body with its surface and its way, thinned for the eye."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import trimesh
 from jaxtyping import Bool, Float, Int
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import RigidTransform, Rotation
 
+from capar.body.anthropometry import Measures
+from capar.body.grasping import fingers_of, hand_seat, known_path, seen_flexions
 from capar.body.human import Human, poses_of
 from capar.body.sensor_fitting import Fit
-from capar.body.shapes import form_mesh, forms, joined
+from capar.body.shapes import form_mesh, forms, joined, moved
 from capar.body.skeleton import skeleton
 from capar.model.capture import Capture, Role, Sensor, Shape, TagObject, TagType
-from capar.model.facts import LookingAt, Touching
+from capar.model.facts import Fact, LookingAt, Touching
 from capar.model.observation import Observation
 from capar.views.picture import frame_clock
 
@@ -29,9 +31,13 @@ COLOURS = {
     "mobile": "#4477aa",
     "fixed": "#a9a9a9",
     "self": "#c98d6b",
+    "finger": "#c98d6b",
     "body": "#e3d3c4",
 }
 """The colour of a body by what it is."""
+
+
+UNNAMED = ("body", "finger")  # Bodies of these kinds bear no names.
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +46,8 @@ class StagedBody:
 
     name: str
     kind: str
-    """``sensor``, ``looks`` (it attends), the tag of an object, or ``body``: of a fitted body."""
+    """``sensor``, ``looks`` (it attends), the tag of an object, ``finger``: a bone of a hand
+    with fingers, or ``body``: of a fitted body."""
 
     shape: Shape | None
     positions: Float[np.ndarray, "frames 3"]
@@ -56,7 +63,7 @@ class StagedBody:
     def label(self) -> str:
         """Its name in words, and whether it is assumed."""
         words = self.name.replace("_", " ")
-        told = self.faint and self.kind != "body" and "assumed" not in words
+        told = self.faint and self.kind not in UNNAMED and "assumed" not in words
         return f"{words} (assumed)" if told else words
 
     @property
@@ -130,6 +137,53 @@ def _extent(body: StagedBody) -> Iterator[Float[np.ndarray, "places 3"]]:
         yield body.positions + radius
 
 
+def with_fingers(shown: Stage, capture: Capture, facts: Iterable[Fact]) -> Stage:
+    """The same stage, where hands of virtual bodies have fingers that close onto what they touch.
+
+    Recorded hands are shown as they are.
+    """
+    frames = np.searchsorted(capture.times, shown.times)
+    bodies, known = {body.name: body for body in shown.bodies}, tuple(facts)
+    for sensor, (measures, seat) in virtual_hands(capture):
+        hand, lost = known_path(sensor.stream) * seat, sensor.stream.lost[frames]
+        angles = seen_flexions(measures, capture, sensor, hand, known)[frames]
+        meshes: dict[str, list[trimesh.Trimesh]] = {}
+        for form in forms(measures, skeleton(measures, fingers=True)):
+            meshes.setdefault(form.body, []).append(form_mesh(form))
+        surfaces = {name: _surface(group) for name, group in meshes.items()}
+        palm = moved(surfaces[f"{sensor.side}_hand"], seat)
+        bodies[sensor.name] = replace(bodies[sensor.name], shape=palm)
+        count = 0
+        for finger in fingers_of(measures, sensor.side):
+            own = angles[:, count : count + len(finger.axes)]
+            count += len(finger.axes)
+            places, turns = (np.array(rows) for rows in zip(*map(finger.bones, own), strict=True))
+            for bone in range(len(finger.starts)):
+                local = RigidTransform.from_components(
+                    places[:, bone], Rotation.from_matrix(turns[:, bone])
+                )
+                pose = hand[frames] * local
+                name = f"{finger.name}_{bone + 1}"
+                shown_as = f"{sensor.name}_{name}" if sensor.agent else name
+                spots = np.where(lost[:, None], np.nan, pose.translation)
+                ways = pose.rotation.as_quat(scalar_first=True)
+                bodies[shown_as] = StagedBody(shown_as, "finger", surfaces[name], spots, ways)
+    return replace(shown, bodies=tuple(bodies.values()))
+
+
+def virtual_hands(capture: Capture) -> Iterator[tuple[Sensor, tuple[Measures, RigidTransform]]]:
+    """Sensors whose surfaces are hands of virtual bodies, with measures and ``T_sensor_hand``."""
+    agents = {agent.name: agent for agent in capture.agents}
+    for sensor in capture.acting:
+        if (found := hand_seat(agents[capture.agent_of(sensor)], sensor)) is not None:
+            yield sensor, found
+
+
+def _surface(group: list[trimesh.Trimesh]) -> Shape:
+    mesh = joined(group)
+    return Shape(np.array(mesh.vertices), np.array(mesh.faces), description="mannequin")
+
+
 SEEN_SHARE = 0.3
 """A body is not shown while a smaller share of what it follows is seen than this, against the most
 that is seen at once [1]: its posture would be made up."""
@@ -171,15 +225,13 @@ def body_parts(
     """The segments of a human body in postures, as bodies to be shown."""
     poses = poses_of(human, motion)
     parts: dict[str, list[trimesh.Trimesh]] = {}
-    for form in forms(human.measures, skeleton(human.measures)):
+    for form in forms(human.measures, human.segments):
         parts.setdefault(form.body, []).append(form_mesh(form))
     out = []
     for number, name in enumerate(poses.names):
         if name in parts:
-            mesh = joined(parts[name])
-            shape = Shape(np.array(mesh.vertices), np.array(mesh.faces), description="mannequin")
             at = poses.positions[:, number], poses.orientations[:, number]
-            out.append(StagedBody(f"body_{name}", "body", shape, *at))
+            out.append(StagedBody(f"body_{name}", "body", _surface(parts[name]), *at))
     return tuple(out)
 
 

@@ -29,7 +29,7 @@ for (const body of data.bodies) {
   const name = document.createElement("div");
   name.className = "name";
   name.textContent = body.label;
-  if (body.kind !== "body") place.append(name);
+  if (!["body", "finger"].includes(body.kind)) place.append(name);
   group.add(axes);
   scene.add(group);
   bodies.set(body.name, {

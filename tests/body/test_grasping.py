@@ -1,0 +1,158 @@
+"""Fingers close onto what a hand holds: they touch it, are not inside of it, and open before."""
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from capar.body.anthropometry import ready_made
+from capar.body.grasping import (
+    CLOSE_S,
+    FINGERS,
+    OPPOSE_S,
+    Grasp,
+    closed_grasp,
+    fingered,
+    fingers_of,
+    flexions,
+    hinge_names,
+)
+from capar.body.human import Human
+from capar.body.scripts import SIDES
+from capar.body.virtual_scenes import Thing, box, cup, grips
+from capar.model.capture import Shape
+
+RATE_HZ = 100.0
+
+
+def rod(radius_m: float, height_m: float) -> Shape:
+    made = trimesh.creation.cylinder(radius_m, height_m, sections=48)
+    made.apply_translation((0.0, 0.0, 0.5 * height_m))
+    return Shape(np.array(made.vertices), np.array(made.faces))
+
+
+THINGS = {
+    "mug": (cup(0.035, 0.09), "side", True),
+    "crate": (box(0.15, 0.20, 0.15), "side", False),
+    "edge": (box(0.035, 0.05, 0.12), "side", False),
+    "pole": (rod(0.014, 0.3), "side", True),
+    "lid": (box(0.12, 0.08, 0.05), "top", False),
+}
+SHORT_ROD = (rod(0.014, 0.05), "side", True)
+
+
+def taken(what: tuple[Shape, str, bool], who: str, side: str) -> tuple[Grasp, RigidTransform]:
+    """How a hand closes on an object at the easiest grip, and ``T_hand_object``."""
+    shape, kind, is_round = what
+    human = Human.of(ready_made(who))
+    site = human.model.site(f"{side}_palm")
+    turn = Rotation.from_quat(site.quat, scalar_first=True)
+    palm = RigidTransform.from_components(site.pos, turn)
+    thing = Thing("thing", shape, (0.0, 0.0, 0.0), round=is_round)
+    seat = palm * grips(thing, side, kind, human.measures)[0].inv()
+    return closed_grasp(human.measures, side, (0, 1), {"thing": (shape, seat)}), seat
+
+
+def gaps(grasp: Grasp, shape: Shape, seat: RigidTransform, who: str, side: str) -> dict[str, float]:
+    """By finger how far its flesh is from the object's triangles, negative inside [m]."""
+    mesh = trimesh.Trimesh(np.array(shape.vertices), np.array(shape.faces), process=False)
+    out, at = {}, 0
+    for finger in fingers_of(ready_made(who), side):
+        own = grasp.closed[at : at + len(finger.axes)]
+        at += len(finger.axes)
+        points = seat.inv().apply(finger.points(own).reshape(-1, 3))
+        count = len(mesh.triangles)
+        pairs = np.tile(mesh.triangles, (len(points), 1, 1)), np.repeat(points, count, axis=0)
+        nearest = trimesh.triangles.closest_point(*pairs)
+        apart = np.linalg.norm(nearest - pairs[1], axis=1).reshape(-1, count).min(axis=1)
+        if mesh.volume > 0.99 * mesh.convex_hull.volume:
+            ahead = points @ mesh.face_normals.T
+            off = ahead - (mesh.face_normals * mesh.triangles[:, 0]).sum(axis=1)
+            apart *= np.sign(off.max(axis=1))
+        out[finger.name] = float((apart - np.repeat(finger.radii, len(points) // 3)).min())
+    return out
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("who", ["man", "child"])
+@pytest.mark.parametrize("name", THINGS)
+def test_fingers_that_close_touch_the_surface_and_are_not_inside(
+    name: str, who: str, side: str
+) -> None:
+    grasp, seat = taken(THINGS[name], who, side)
+    found = gaps(grasp, THINGS[name][0], seat, who, side)
+    assert len(grasp.reaching) >= 4
+    assert set(grasp.reaching) | set(grasp.short) == {f"{side}_{each}" for each in FINGERS}
+    assert min(found.values()) > -0.001
+    assert max(found[finger] for finger in grasp.reaching) < 0.002
+
+
+def test_hands_are_mirror_images_of_each_other() -> None:
+    for name in ("mug", "crate"):
+        right, left = (taken(THINGS[name], "woman", side)[0] for side in SIDES)
+        np.testing.assert_allclose(right.closed, left.closed, atol=0.05)
+
+
+def test_a_finger_beside_a_short_rod_stays_open_and_is_reported() -> None:
+    grasp, _ = taken(SHORT_ROD, "man", "right")
+    assert "right_index" in grasp.short
+    index = [name.startswith("right_index") for name in hinge_names("right")]
+    assert not grasp.closed[index].any()
+    assert {"right_ring", "right_little"} <= set(grasp.reaching)
+
+
+def test_a_thumb_is_opposed_to_the_fingers_around_a_mug_and_flat_on_a_crate() -> None:
+    opposed = hinge_names("right").index("right_thumb_opposition")
+    around, flat = (taken(THINGS[name], "man", "right")[0].closed for name in ("mug", "crate"))
+    assert around[opposed] > np.radians(40.0)
+    assert flat[opposed] < np.radians(15.0)
+
+
+def test_fingers_are_open_before_and_after_and_closed_meanwhile() -> None:
+    grasp, _ = taken(THINGS["mug"], "man", "right")
+    held = Grasp(100, 200, (), grasp.opened, grasp.closed, grasp.reaching, grasp.short)
+    angles = flexions(300, RATE_HZ, [held])
+    np.testing.assert_allclose(angles[100:201], np.tile(grasp.closed, (101, 1)))
+    away = round((CLOSE_S + OPPOSE_S) * RATE_HZ) + 1
+    assert not angles[: 100 - away].any()
+    assert not angles[201 + away :].any()
+    straight = [not name.startswith("right_thumb") for name in hinge_names("right")]
+    assert not angles[: 100 - round(CLOSE_S * RATE_HZ), straight].any()
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_bones_are_where_the_model_of_the_body_has_them(side: str) -> None:
+    human, rng = Human.of(ready_made("woman")), np.random.default_rng(3)
+    fingers = fingers_of(human.measures, side)
+    angles = np.concatenate([rng.uniform(*each.ranges.T) for each in fingers])
+    body, posture = fingered(human, human.posture()[None], {side: angles[None]})
+    assert not body.outside(posture).any()
+    wrist = body.sites(posture, [f"{side}_hand"])[f"{side}_hand"][0][0]
+    at = 0
+    for finger in fingers:
+        places, turns = finger.bones(angles[at : at + len(finger.axes)])
+        at += len(finger.axes)
+        for bone in range(3):
+            name = f"{finger.name}_{bone + 1}"
+            spots, quats = body.sites(posture, [name])[name]
+            np.testing.assert_allclose(places[bone], spots[0] - wrist, atol=1e-9)
+            own = Rotation.from_quat(quats[0], scalar_first=True).as_matrix()
+            np.testing.assert_allclose(turns[bone], own, atol=1e-9)
+
+
+def test_five_fingers_weigh_what_fingers_that_bend_as_one_weigh() -> None:
+    measures = ready_made("man")
+    one, five = (Human.of(measures, fingers=fingers) for fingers in (False, True))
+    assert five.model.body_subtreemass[0] == pytest.approx(one.model.body_subtreemass[0])
+    np.testing.assert_allclose(
+        five.centre_of_mass(five.posture()), one.centre_of_mass(one.posture()), atol=1e-3
+    )
+
+
+def test_fingers_that_bent_as_one_bend_likewise() -> None:
+    human = Human.of(ready_made("man"))
+    posture = human.posture({"left_knuckle_flexion": 0.4, "left_finger_flexion": 0.6})
+    body, motion = fingered(human, posture[None], {})
+    for finger in ("index", "little"):
+        assert motion[0, body.index(f"left_{finger}_flexion_1")] == 0.4
+        assert motion[0, body.index(f"left_{finger}_flexion_2")] == 0.6
