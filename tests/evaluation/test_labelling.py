@@ -78,6 +78,16 @@ def test_a_segment_says_its_kinds_goal_sentence_and_rule(demo: Any) -> None:
     assert held["start_s"] == pytest.approx(to_mouth["start_s"], abs=1e-6)
 
 
+def test_motions_are_the_same_in_a_data_frame(demo: Any) -> None:
+    rows = [row for row in label([demo]) if row["row"] == "motion"]
+    frame = demo.to_frame("motions")
+    assert list(frame["how"]) == [row["name"] for row in rows] == ["carried"]
+    assert list(frame["mover"]) == [row["effector"] for row in rows]
+    assert list(frame["start_s"]) == [row["start_s"] for row in rows]
+    with pytest.raises(CaparError, match="motions"):
+        demo.to_frame("motion")
+
+
 @pytest.mark.parametrize("seen", SEEN, ids=lambda each: each.capture)
 def test_each_frame_has_one_row_of_each_end_effector(seen: Any) -> None:
     rows = list(label([seen], per_frame=True))
