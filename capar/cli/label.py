@@ -81,18 +81,16 @@ def label(
     mapping = read_mapping(vocabulary) if vocabulary else None
     base = options.rule_base(profile, rules, actionary, steady=steady)
     places = find_captures(captures)
-    rows = [
-        row
-        for place in progress("observing")(places)
-        for row in labels([place], per_frame=per_frame, vocabulary=mapping, rules=base)
-    ]
+    told_of = progress("observing")(places)
+    rows = list(labels(told_of, per_frame=per_frame, vocabulary=mapping, rules=base))
     if dataset is not None:
         from capar.evaluation.lerobot import write_subtasks
 
         counts = write_subtasks(rows, dataset, output, effector=effector)
         told = f"{sum(counts.values())} subtasks of {len(counts)} episodes"
     elif format_ in FOLDERS:
-        told = f"{len(write_labels(rows, format_, output))} files"
+        count = len(write_labels(rows, format_, output))
+        told = f"{count} file{'s' * (count != 1)}"
     else:
         with written(output) as draft:
             write_labels(rows, format_, draft)

@@ -59,17 +59,22 @@ def label(
         rules: The rule profile to observe with, or its name.
 
     Raises:
-        CaparError: A capture or the vocabulary has a fault.
+        CaparError: A capture or the vocabulary has a fault, or two captures have one name.
     """
     base = profile(rules) if isinstance(rules, str) else rules
     mapping = read_mapping(Path(vocabulary)) if isinstance(vocabulary, str | Path) else vocabulary
     words = () if per_frame else primitive_words(primitive_files(base.added))
+    names = set[str]()
     for given in captures:
         places: Sequence[Any] = [given]
         if isinstance(given, str | Path):
             places = find_captures([str(given)])
         for place in places:
             seen = place if isinstance(place, Observation) else observe(place, rules=base)
+            if seen.capture in names:
+                where = f"; one is {place}" if isinstance(place, str) else ""
+                raise CaparError(f"two captures are called {seen.capture!r}{where}: rename one")
+            names.add(seen.capture)
             if mapping is not None:
                 objects = [each.name for each in seen.objects]
                 known = known_names([seen], base)

@@ -137,6 +137,11 @@ def test_the_same_observation_gives_the_same_bytes(form: str, demo: Any, tmp_pat
     assert first == second
 
 
+def test_two_captures_of_one_name_are_refused(demo: Any) -> None:
+    with pytest.raises(CaparError, match="two captures are called 'drink_from_mug_tall_man'"):
+        list(label([demo, SEEN[1], DEMO]))
+
+
 def test_a_vocabulary_gives_other_labels_and_unknown_names_are_refused(
     demo: Any, tmp_path: Path
 ) -> None:
