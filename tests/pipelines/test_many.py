@@ -48,6 +48,9 @@ def test_patterns_mean_folders_takes_and_what_is_below(study: Path, tmp_path: Pa
     takes = [f"{bundle}:{each}" for each in ("a1", "a2", "b")]
     assert find_captures([str(bundle)]) == takes
     assert find_captures([f"{bundle}:a*"]) == takes[:2]
+    odd = bundle.rename(tmp_path / "odd [1]")
+    assert find_captures([str(odd)])[0] == f"{odd}:a1"
+    bundle = odd.rename(bundle)
     for pattern, wrong in ((f"{bundle}:x*", "Its takes are: a1, a2, b"), ("no*ne", "no capture")):
         with pytest.raises(CaparError, match=wrong):
             find_captures([pattern])

@@ -47,8 +47,9 @@ def find_captures(
 
 def _places(folder: Path, pattern: str) -> Iterator[Path]:
     """Bundles that a pattern means, from that folder on or, absolute, from the root."""
-    # Path.glob refuses absolute patterns.
-    found = glob(pattern, root_dir=folder, recursive=True, include_hidden=True)  # noqa: PTH207
+    found = [pattern]
+    if not (folder / pattern).exists():  # Path.glob refuses absolute patterns.
+        found = glob(pattern, root_dir=folder, recursive=True, include_hidden=True)  # noqa: PTH207
     for path in (folder / each for each in sorted(found)):
         if (path / FILE).is_file() or (
             path.is_file() and path.suffix == ".toml" and not path.name.endswith(SUFFIX)
