@@ -34,7 +34,7 @@ NEAR_HAND = 0.75
 RATES, STEPS = (1.0, 1.0, 0.7), 200
 #: Flexions with which fingers begin to close, and oppositions of the thumb that are tried [rad]
 OPEN = tuple(np.radians([-15.0, 0.0, 0.0]))
-OPPOSITIONS = tuple(np.radians([75.0, 60.0, 45.0, 30.0, 15.0]))
+OPPOSITIONS = tuple(np.radians([75.0, 60.0, 45.0, 30.0, 15.0, 0.0]))
 #: How long before contact fingers close, and before that the thumb is opposed; likewise after [s]
 CLOSE_S, OPPOSE_S = 0.2, 0.3
 
@@ -414,7 +414,7 @@ def seen_flexions(
     things = {
         each.name: (each.shape, known_path(each.stream))
         for each in capture.objects
-        if each.shape is not None and each.tag is not TagType.SELF
+        if each.shape is not None and each.tag is not TagType.SELF and not each.stream.lost.all()
     }
     spans: list[tuple[int, int, Collection[str]]] = []
     touched = [f for f in facts if isinstance(f, Touching) and sensor.name == f.body]

@@ -48,7 +48,9 @@ def fit(
     made = fit_body(capture, recorded)
     warnings = fit_warnings(capture, recorded, made)
     if any((bvh, glb, c3d, npz, csv, mjcf)):
-        found = observe(recorded).facts if recorded.objects else ()
+        hands = any(sensor.end_effector == "hand" for sensor in recorded.acting)
+        shaped = any(thing.shape is not None for thing in recorded.objects)
+        found = observe(recorded).facts if hands and shaped else ()
         shown = fingered_fit(made, recorded, found)
         motion = (shown.human, shown.times, shown.motion)
     if bvh:
