@@ -2,7 +2,7 @@
 
 ``python benchmarks/regeneration.py`` times the parts of two regenerations at 100 Hz; with ACTIONs,
 or ``all`` ten of the figures, it makes round trips of these, ``--scenes`` of each for each body;
-with ``--noisy`` of recordings with noise, and in the first scene without it for comparison. The
+with ``--noisy`` of noisy recordings, and in the first scene of others for comparison. The
 table at the end says how many fingers closed onto what their hand holds, how deep a bone of them is
 inside of anything at any frame, and how far a finger is off what it closed on while it is held.
 """
@@ -69,8 +69,11 @@ def made(action: str, number: int, agent: str, *, rate_hz: float, noisy: bool) -
     trip = round_trip(source, agent, body(agent, source), number, scene)
     took_s = time.process_time() - began
     passed = trip.quality is not None and trip.quality.passed
-    came = {"in reach": trip.quality is not None, "same PAR": trip.same_par, "every gate": passed}
-    counts = Counter(came, both=trip.same_par and passed, asked=1)
+    came = {
+        "asked": True, "in reach": not trip.refused, "same PAR": trip.same_par,
+        "every gate": passed, "both": trip.same_par and passed,
+    }  # fmt: skip
+    counts = Counter(name for name, holds in came.items() if holds)
     return line(action, trip), counts, took_s, closed(trip)
 
 
