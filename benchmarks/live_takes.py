@@ -23,6 +23,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+from bundles import DRINKING
+
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 import motions
@@ -42,7 +44,6 @@ from extractors.calibration import calibrate
 from extractors.measure import measure
 
 ROOT = Path(__file__).parents[1]
-DEMO = ROOT / "capar" / "demo" / "drink_from_mug"
 COOK = ROOT / "examples" / "bimacs_optitrack"
 CARRIER = ROOT / "examples" / "omomo_intermimic"
 MOVED_S = 0.1
@@ -50,7 +51,7 @@ MOVED_S = 0.1
 
 Clip = Callable[..., Capture]
 CLIPS: dict[str, Clip] = {
-    "drink": lambda: trial_of(DEMO),
+    "drink": lambda: trial_of(DRINKING),
     "slide": lambda: motions.slide_object(motions.WOMAN).capture,
     "both_hands": lambda: motions.pick_up_with_both_hands(motions.WOMAN).capture,
     "one_leg": lambda: motions.stand_on_one_leg(motions.WOMAN).capture,

@@ -198,9 +198,9 @@ def main() -> None:
     parser.add_argument("target", type=Path, nargs="?")
     parser.add_argument("--copies", type=int, default=25)
     parser.add_argument("--first", type=int, help="ask no more questions of each kind")
-    parser.add_argument("--capture", default="drink_from_mug_tall_man")
+    parser.add_argument("--capture", default="drink_from_mug")
     parser.add_argument("--object", default="mug")
-    parser.add_argument("--performer", default="tall_man")
+    parser.add_argument("--performer", default="man")
     options = parser.parse_args()
     if options.target:
         copies(options.folder, options.target, options.copies)

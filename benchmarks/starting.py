@@ -23,7 +23,7 @@ import scene
 DEMO = str(resources.files("capar") / "demo" / "drink_from_mug")
 MAIN = "from capar.cli import main; main()"
 COMMANDS = {
-    "capar observe, 4 s capture": [sys.executable, "-c", MAIN, "observe", DEMO],
+    "capar observe, the shipped capture": [sys.executable, "-c", MAIN, "observe", DEMO],
     "the same, nothing cached": [sys.executable, "-c", MAIN, "observe", DEMO],
     "capar --help": [sys.executable, "-c", MAIN, "--help"],
     "import capar": [sys.executable, "-c", "import capar"],

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import motions
+from bundles import DRINKING
 from observations import drink_from_mug, with_unknown
 
 from capar.model.capture import Agent, Capture
@@ -67,8 +68,6 @@ TAKES = (
 KITCHEN = ("bimacs_optitrack:take0", "bimacs_optitrack:take5")
 """The captures of those takes in which things are stirred and poured."""
 
-DEMO = HERE / "capar" / "demo" / "drink_from_mug"
-
 
 def recordings() -> Iterator[str]:
     """The takes that are asked about, where there are recordings."""
@@ -98,7 +97,7 @@ class World:
         self.measured: dict[str, Measurements] = {}
         self.seen: list[Observation] = []
         lifted = motions.pick_up_with_both_hands(motions.PERFORMERS[0]).capture
-        for place in (str(DEMO), *recordings(), lifted):
+        for place in (str(DRINKING), *recordings(), lifted):
             capture = trial_of(place)
             measured = measure(capture)
             self.captures[capture.name] = capture

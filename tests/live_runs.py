@@ -7,6 +7,7 @@ from pathlib import Path
 
 import motions
 import numpy as np
+from bundles import DRINKING
 from motions.encounters import kick, throw
 from windows import repeated
 
@@ -20,11 +21,10 @@ from capar.pipelines.trials import trial_of
 from extractors.calibration import calibrate
 from extractors.measure import measure
 
-DEMO = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
 CAPTURES: dict[str, Callable[[], Capture]] = {
-    "demo": lambda: trial_of(DEMO),
+    "demo": lambda: trial_of(DRINKING),
     "slide": lambda: motions.slide_object(motions.WOMAN).capture,
     "both hands": lambda: motions.pick_up_with_both_hands(motions.WOMAN).capture,
     "one leg": lambda: motions.stand_on_one_leg(motions.WOMAN).capture,
@@ -36,7 +36,7 @@ CAPTURES: dict[str, Callable[[], Capture]] = {
     "box carried": lambda: trial_of(
         f"{EXAMPLES}/omomo_intermimic/largebox_hands.toml:sub3_largebox_003"
     ),
-    "drinking on and on": lambda: repeated(trial_of(DEMO), 3),
+    "drinking on and on": lambda: repeated(trial_of(DRINKING), 3),
 }
 
 

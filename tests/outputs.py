@@ -41,11 +41,11 @@ PARAMETERS = {
     "goal": "table",
     "levin": "11.2",
     "lemma": "move",
-    "capture": "drink_from_mug_tall_man",
+    "capture": "drink_from_mug",
     "body": "mug",
     "time": "2.5",
-    "first": "drink_from_mug_tall_man",
-    "second": "drink_from_mug_tall_man",
+    "first": "drink_from_mug",
+    "second": "drink_from_mug",
 }
 """A value for each parameter that a named question demands."""
 

@@ -1,12 +1,8 @@
 """Commands run within this process, as their users type them."""
 
-from pathlib import Path
-
 from typer.testing import CliRunner, Result
 
 from capar.cli import app
-
-DEMO = str(Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug")
 
 
 def capar(*words: object, typed: str = "") -> Result:

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from bundles import DRINKING
+
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.performing import perform
@@ -29,7 +31,6 @@ from capar.regeneration.sources import captured_scene
 from kb.language.vocabulary import Vocabulary
 
 HERE = Path(__file__).parent
-DEMO = HERE.parent / "capar" / "demo" / "drink_from_mug"
 RATE_HZ = 30.0
 
 
@@ -61,7 +62,7 @@ def spoken() -> list[Spoken]:
 @cache
 def world(name: str) -> scenes.Scene:
     """The scene of a world."""
-    return captured_scene(trial_of(DEMO) if name == "demo" else _standing(name))
+    return captured_scene(trial_of(DRINKING) if name == "demo" else _standing(name))
 
 
 def _standing(name: str) -> Capture:

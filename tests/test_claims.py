@@ -9,6 +9,7 @@ from pathlib import Path
 
 import motions
 import pytest
+from bundles import DRINKING
 from typer.testing import CliRunner
 
 from capar.claims.claims import ClaimError, judge, read_motion_test, run_motion_test
@@ -16,8 +17,6 @@ from capar.cli import app
 from capar.model.errors import CaparError, FileError, UnknownNameError
 from capar.model.observation import Observation
 from capar.pipelines.observation import observe
-
-DEMO = Path(__file__).parents[1] / "capar" / "demo"
 
 
 @pytest.fixture(scope="module")
@@ -129,7 +128,7 @@ def test_what_bears_no_such_name_is_refused_in_every_form_of_claim(drink, event,
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    (tmp_path / "drink").symlink_to(DEMO / "drink_from_mug")
+    (tmp_path / "drink").symlink_to(DRINKING)
     (tmp_path / "sip.motion.toml").write_text(
         'captures = ["dr*"]\n[[expect]]\nthat = "right_hand MoveObjTo(mug, head)"\n'
         '[[expect]]\nthat = "right_hand Hit"\n'
@@ -150,7 +149,7 @@ def with_pytest(folder: Path, *options: str) -> subprocess.CompletedProcess[str]
 def bundle(tmp_path: Path) -> Path:
     """Two takes of one capture; the second breaks off."""
     place = tmp_path / "bundle"
-    shutil.copytree(DEMO / "drink_from_mug", place)
+    shutil.copytree(DRINKING, place)
     lines = (place / "motion.csv").read_text().splitlines(keepends=True)
     (place / "whole.csv").write_text("".join(lines))
     (place / "short.csv").write_text("".join(lines[: len(lines) // 2]))

@@ -44,7 +44,7 @@ def test_the_first_steps_observe_look_ask_and_explain(capsys: pytest.CaptureFixt
     printed = capsys.readouterr().out
     assert "<table>" in shown(values[0])
     seen = names["seen"]
-    assert printed.startswith("The tall man")
+    assert printed.startswith("The man")
     assert all(word in printed for word in ("mug", "right hand", "drank"))
     assert "Push (push_with.lp:2) would need" in printed
     about_mug = {each.name for each in seen.segments if "mug" in each.objects}

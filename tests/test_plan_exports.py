@@ -7,6 +7,7 @@ import behaviortreepy
 import motions
 import pytest
 from bml_standard import check_bml, synchronized, times_of
+from bundles import DRINKING
 from motions.performers import PERFORMERS
 from plan_tools import World, problem_of, shortest_plan, ticked
 from typer.testing import CliRunner
@@ -21,7 +22,6 @@ from capar.pipelines.observation import observe
 from capar.pipelines.plan_export import observed_plan, plan_files
 from kb import Actionary
 
-DEMO = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
 MOTIONS = {
     "touch_cycle": motions.touch_cycle,
     "slide_object": motions.slide_object,
@@ -34,7 +34,7 @@ NAMES = ("demo", *MOTIONS)
 
 @cache
 def _seen(name: str) -> Observation:
-    return observe(DEMO if name == "demo" else MOTIONS[name](PERFORMERS[0]).capture)
+    return observe(DRINKING if name == "demo" else MOTIONS[name](PERFORMERS[0]).capture)
 
 
 @cache
@@ -208,9 +208,9 @@ def test_a_stored_observation_gives_the_same_plan_as_its_capture(tmp_path: Path)
 def test_a_plan_that_is_not_named_whole_is_refused_with_the_remedy(tmp_path: Path) -> None:
     for arguments, remedy in (
         (("--format", "bml"), "name a capture or an observation"),
-        ((str(DEMO), "--format", "pddl"), "name a folder by --output"),
-        ((str(DEMO), "--format", "pddl", "--output", str(DEMO)), "new folder"),
-        ((str(DEMO), "--format", "bt", "--soma"), "leave it out"),
+        ((str(DRINKING), "--format", "pddl"), "name a folder by --output"),
+        ((str(DRINKING), "--format", "pddl", "--output", str(DRINKING)), "new folder"),
+        ((str(DRINKING), "--format", "bt", "--soma"), "leave it out"),
         (("--output", "x.ttl", "--actionary", str(tmp_path)), "RDF goes to FILE"),
         (("nowhere", "--format", "bml", "--actionary", str(tmp_path)), "nowhere: is no capture"),
     ):

@@ -5,6 +5,7 @@ import signal
 from pathlib import Path
 
 import pytest
+from bundles import DRINKING
 from typer.testing import CliRunner
 
 from capar.cli import app
@@ -25,8 +26,6 @@ from capar_rules.lint.checking import admitted_profile
 from kb.actionary import Actionary
 from kb.errors import StoreError
 from kb.lookup.observations import source_files
-
-DEMO = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
 
 LIFT = """%* Lift: a possessed object is taken off what it stood on. *%
 primitive("Lift").
@@ -67,7 +66,7 @@ EXAMPLES = """
 def shaky(folder: Path) -> Path:
     """A capture whose hand jerks away from the mug that it holds, for a moment."""
     place = folder / "shaky"
-    shutil.copytree(DEMO, place)
+    shutil.copytree(DRINKING, place)
     head, *rows = (place / "motion.csv").read_text().splitlines()
     at = head.split(",").index("right_hand_y")
     for frame in range(210, 222):
@@ -81,7 +80,7 @@ def shaky(folder: Path) -> Path:
 @pytest.fixture
 def kept(tmp_path: Path) -> Path:
     """A folder with a capture, its observation in an Actionary, and a rule."""
-    shutil.copytree(DEMO, tmp_path / "captures" / "drink")
+    shutil.copytree(DRINKING, tmp_path / "captures" / "drink")
     with Actionary.open(tmp_path / "actionary") as store:
         store.add(observe(tmp_path / "captures" / "drink", rules="thesis"))
     (tmp_path / "lift.lp").write_text(LIFT)
@@ -202,7 +201,7 @@ def test_who_interrupts_is_heard_when_the_step_is_done():
 
 def test_takes_of_a_bundle_are_found_again(tmp_path):
     bundle = tmp_path / "captures" / "both"
-    shutil.copytree(DEMO, bundle)
+    shutil.copytree(DRINKING, bundle)
     for take in ("take1", "take10"):
         shutil.copy(bundle / "motion.csv", bundle / f"{take}.csv")
     (bundle / "take1.csv").open("a").write("\n")

@@ -1,20 +1,17 @@
 """First drafts of rules, from a segment or from a feature set."""
 
-from pathlib import Path
-
 import pytest
+from bundles import DRINKING
 
 from capar.model.errors import CaparError
 from capar.rulebook.drafts import rule_from_features, rule_from_segment
 from capar_rules.authoring.user_primitives import try_rule
 from capar_rules.engine.profiles import profile
 
-DEMO = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
-
 
 def test_a_drafted_rule_names_the_segment_that_it_was_drafted_from(tmp_path):
     text = rule_from_segment(
-        "Sip", f"{DEMO}/right_hand/2", rules=profile("thesis"), general="MoveObj"
+        "Sip", f"{DRINKING}/right_hand/2", rules=profile("thesis"), general="MoveObj"
     )
     path = tmp_path / "sip.lp"
     path.write_text(text)

@@ -1,4 +1,4 @@
-"""Writes the bundle that ships: the tall man drinks from a mug, with a good tracker's noise.
+"""Writes a bundle of a closed form: the tall man drinks, with a good tracker's noise.
 
 Run as ``python tests/write_demo.py`` to rewrite it.
 """
@@ -6,11 +6,11 @@ Run as ``python tests/write_demo.py`` to rewrite it.
 from pathlib import Path
 
 import numpy as np
+from bundles import DRINKING
 from motions import TALL_MAN, drink_from_mug
 
 from capar.model.capture import Capture, Sensor, Shape, TagObject
 
-BUNDLE = Path(__file__).parents[1] / "capar" / "demo" / "drink_from_mug"
 NOISE_M = 0.0003
 NOISE_RAD = float(np.radians(0.1))
 PARTS = ("x", "y", "z", "qx", "qy", "qz", "qw", "valid")
@@ -54,4 +54,4 @@ def _write(path: Path, lines: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    write_tables(demo_capture(), BUNDLE)
+    write_tables(demo_capture(), DRINKING)

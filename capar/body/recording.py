@@ -1,7 +1,7 @@
 """A performance as a tracker would have recorded it: a capture, a bundle, and the exact truth."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +19,14 @@ from capar.model.capture import Agent, Capture, Role, Sensor, Stream, TagObject,
 #: What a hand's surface consists of; the thumb is left out, as it moves against them
 HAND_SEGMENTS = ("hand", "fingers", "fingertips")
 LINKS = {"hand": "arm", "foot": "leg", "head": "neck"}
+#: Places of sensors that are worn together; ``thesis`` are the eleven of thesis 5.1
+RIGS = {
+    "hands": ("right_hand", "left_hand", "head"),
+    "thesis": (
+        "right_hand", "left_hand", "head", "neck", "l5", "right_elbow", "left_elbow",
+        "right_knee", "left_knee", "right_foot", "left_foot",
+    ),
+}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,9 +88,10 @@ def record(
     name: str,
     seed: int,
     tracker: Tracker | None = None,
-    sensors: tuple[str, ...] = ("right_hand", "left_hand", "head"),
+    sensors: tuple[str, ...] = RIGS["hands"],
+    acting: Collection[str] | None = None,
     eye_tracker: bool = True,
-    agent: Agent | None = None,
+    agent: str = "performer",
 ) -> Capture:
     """The capture of a performance.
 
@@ -92,8 +101,9 @@ def record(
         seed: Of noise, places of sensors and losses.
         tracker: Its faults; a MotionStar's where None.
         sensors: Places of those that are worn.
+        acting: Places of those that act, all others attend; hands and feet where None.
         eye_tracker: Whether a worn head is recorded with its eyes (a sensor ``eyes``).
-        agent: Who performed; sex and all measures of the body where None.
+        agent: Name of who performed; its kind and measures are those of the body.
 
     Raises:
         UnknownNameError: A place is none of the model's.
@@ -101,7 +111,7 @@ def record(
     tracker, rng = tracker or Tracker(), np.random.default_rng(seed)
     mounts = strap_on(made.human, sensors, tracker, rng)
     streams = sense(made.human, made.times, made.motion, mounts, tracker, rng)
-    worn = [_sensor(made, mounts[place], streams[place]) for place in sensors]
+    worn = [_sensor(made, mounts[place], streams[place], acting) for place in sensors]
     objects = []
     for thing in made.scene.things.values():
         faults = PERFECT if thing.tag is TagType.FIXED else tracker
@@ -121,11 +131,13 @@ def record(
         name=name,
         sensors=tuple(worn),
         objects=(*heads, *objects),
-        agent=agent or Agent("performer", kind, {"age": made.human.measures.age, **measures}),
+        agent=Agent(agent, kind, {"age": made.human.measures.age, **measures}),
     )
 
 
-def _sensor(made: Performance, mount: Mount, stream: Stream) -> Sensor:
+def _sensor(
+    made: Performance, mount: Mount, stream: Stream, acting: Collection[str] | None
+) -> Sensor:
     """A worn sensor with the surface of what it is worn on, in its own frame."""
     side, _, part = mount.place.rpartition("_")
     seat = mount.pose.inv()
@@ -144,11 +156,10 @@ def _sensor(made: Performance, mount: Mount, stream: Stream) -> Sensor:
     if part == "hand":
         parts = tuple(f"{side}_{segment}" for segment in HAND_SEGMENTS)
         shape = moved(segment_surface(made.human.measures, parts, f"{side}_hand"), seat)
-    acts = part in {"hand", "foot"}
-    link = f"{side}_{LINKS[part]}" if acts else f"{side}_{part}" if side else mount.place
-    return Sensor(
-        mount.place, part, side or "none", link, stream, shape, Role.ACTS if acts else Role.ATTENDS
-    )
+    link = f"{side}_{LINKS.get(part, part)}" if side else mount.place
+    acts = part in {"hand", "foot"} if acting is None else mount.place in acting
+    role = Role.ACTS if acts else Role.ATTENDS
+    return Sensor(mount.place, part, side or "none", link, stream, shape, role)
 
 
 def _eyes(made: Performance, tracker: Tracker, rng: np.random.Generator) -> Sensor:
@@ -206,7 +217,7 @@ def _toml(capture: Capture) -> list[str]:
         out += [f'agent = "{sensor.agent}"'] * bool(sensor.agent)
         out += [f'side = "{sensor.side}"'] * (sensor.side != "none")
         out += [f'link = "{sensor.link}"', f'role = "{sensor.role}"', f'body = "{sensor.name}"']
-        if sensor.role is Role.ATTENDS:
+        if sensor.end_effector in {"head", "eyes"}:
             out += [f"eye = {_list(sensor.eye)}", f"gaze = {_list(sensor.gaze)}"]
         out += [f'shape = {{ mesh = "{sensor.name}.obj" }}'] * (sensor.shape is not None)
     for thing in capture.objects:
@@ -223,6 +234,9 @@ def _toml(capture: Capture) -> list[str]:
         out += [f'part_of = "{thing.part_of}"'] * bool(thing.part_of)
         closed = {"closed_deg": thing.closed_deg, "closed_m": thing.closed_m}
         out += [f"{key} = {value}" for key, value in closed.items() if value is not None]
+    for purpose in capture.purposes:
+        out += ["", "[[purpose]]"]
+        out += [f'{key} = "{value}"' for key, value in asdict(purpose).items() if value]
     return out
 
 

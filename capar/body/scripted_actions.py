@@ -1,5 +1,6 @@
 """Actions that virtual bodies perform, and where: what can be tried without a recording."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -7,7 +8,7 @@ import numpy as np
 from capar.body.anthropometry import ready_made
 from capar.body.human import Human
 from capar.body.performing import Performance, Role, perform, perform_together
-from capar.body.recording import record, record_together
+from capar.body.recording import RIGS, record, record_together
 from capar.body.scripts import (
     SIDES,
     Move,
@@ -36,7 +37,7 @@ from capar.body.virtual_scenes import (
     scene,
     table,
 )
-from capar.model.capture import Capture, TagType
+from capar.model.capture import Capture, Purpose, TagType
 from capar.model.errors import UnknownNameError
 
 #: How far the crate that is pushed is turned [rad]: straight ahead is at the wrist's limit
@@ -90,11 +91,13 @@ POUR: list[Step] = [
     ("release", 0.4, None),
 ]
 
-#: Each has the objects of its own scene. Those of thesis 5.2 are ``sip`` (DrinkFromMug), ``touch``
-#: (TouchCycle), ``touch_from_rest``, ``slide`` (SlideObject) and ``pick_up`` (PickUpWithBothHands)
+#: Each has the objects of its own scene. Those of thesis 5.2 are ``drink_from_mug`` and, faster,
+#: ``sip``; ``touch`` (TouchCycle), ``touch_from_rest``, ``slide`` (SlideObject) and ``pick_up``
+#: (PickUpWithBothHands)
 ACTIONS: dict[str, Script] = {
     "drink": drink("mug"),
     "sip": sip("mug"),
+    "drink_from_mug": sip("mug", times_s=(1.45, 1.0, 0.94, 0.2, 0.68, 0.19, 1.03)),
     "touch": touch("crate"),
     "touch_from_rest": touch("crate", seconds=1.4)[:3],
     "slide": slide("mug", (0.0, 0.12, 0.0)),
@@ -109,6 +112,15 @@ ACTIONS: dict[str, Script] = {
     "drawer": handling("drawer", DRAWER, grip="top"),
     "wipe": handling("sponge", [TOUCH, *STROKES, ("hold", 0.4, None)], grip="top"),
     "toss": toss("mug"),
+}
+#: What each step of an action is done for (thesis 4.6.2); the first that fits counts
+PURPOSES = {
+    "drink_from_mug": (
+        Purpose("PickUp", action="Reach"),
+        Purpose("Drink", goal="head"),
+        Purpose("PutDown", action="MoveObjTo", goal="table"),
+        Purpose("Release"),
+    )
 }
 JOINT_ACTIONS = ("hand_over",)  # those of two bodies
 
@@ -152,11 +164,27 @@ def performed(action: str, who: str = "man", *, rate_hz: float = 60.0) -> Perfor
 
 
 def action_capture(
-    action: str, who: str = "man", *, rate_hz: float = 60.0, noisy: bool = False, seed: int = 3
+    action: str,
+    who: str = "man",
+    *,
+    rate_hz: float = 60.0,
+    noisy: bool = False,
+    seed: int = 3,
+    rig: str = "hands",
 ) -> Capture:
-    """What a tracker records of an action: a perfect one, or one with usual faults."""
+    """What a tracker records of an action: a perfect one, or one with usual faults.
+
+    Sensors are those of a rig of ``RIGS``; with the whole one only hands that do something act.
+    """
+    if rig not in RIGS:
+        raise UnknownNameError("rig", rig, RIGS)
     made = performed(action, who, rate_hz=rate_hz)
-    return record(made, name=action, seed=seed, tracker=Tracker() if noisy else PERFECT)
+    busy = {f"{side}_hand" for phase in made.script for side in phase.hands}
+    capture = record(
+        made, name=action, seed=seed, tracker=Tracker() if noisy else PERFECT, sensors=RIGS[rig],
+        acting=None if rig == "hands" else busy, agent=who,
+    )  # fmt: skip
+    return replace(capture, purposes=PURPOSES.get(action, ()))
 
 
 @cache

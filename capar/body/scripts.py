@@ -142,17 +142,23 @@ def drink(thing: str) -> Script:
     )
 
 
-def sip(thing: str) -> Script:
-    """Drink from a cup in one go, in the six steps and about the times of thesis 5.2.1."""
+def sip(
+    thing: str, *, times_s: Sequence[float] = (0.8, 1.0, 0.8, 0.13, 0.58, 0.19, 0.75)
+) -> Script:
+    """Drink from a cup in one go, in the six steps of thesis 5.2.1.
+
+    Standing, reaching, raising, drinking, lowering, releasing and returning take these times [s].
+    """
     tilt = float(np.radians(40.0))
+    stand_s, reach_s, raise_s, drink_s, lower_s, release_s, back_s = times_s
     steps: list[Step] = [
-        ("raise", 0.8, Move(to_mouth=True, tilt=0.4 * tilt)),
-        ("drink", 0.13, Move(to_mouth=True, tilt=tilt)),
-        ("lower", 0.58, Move(home=True)),
-        ("release", 0.19, None),
+        ("raise", raise_s, Move(to_mouth=True, tilt=0.4 * tilt)),
+        ("drink", drink_s, Move(to_mouth=True, tilt=tilt)),
+        ("lower", lower_s, Move(home=True)),
+        ("release", release_s, None),
     ]
-    _, *phases, _ = handling(thing, steps, back_s=0.75)
-    return (replace(STAND, seconds=0.8), *phases)
+    _, *phases, _ = handling(thing, steps, reach_s=reach_s, back_s=back_s)
+    return (replace(STAND, seconds=stand_s), *phases)
 
 
 def lift_with_both_hands(thing: str, *, height: float = 0.25) -> Script:

@@ -9,6 +9,7 @@ from typer import Argument, Option
 
 from capar.cli.options import Assume, Capture, Json, NewBundle
 from capar.cli.output import answer, check_new_folder, save
+from capar.model.errors import CaparError
 
 if TYPE_CHECKING:
     from capar.body.sensor_fitting import Fit
@@ -106,8 +107,9 @@ def perform(
     action: Annotated[
         str,
         Argument(
-            help="drink, sip, touch, touch_from_rest, slide, carry, carry_tray, carry_two, "
-            "pick_up, turn, push, pour, door, drawer, wipe or toss; of two bodies hand_over."
+            help="drink, drink_from_mug, sip, touch, touch_from_rest, slide, carry, carry_tray, "
+            "carry_two, pick_up, turn, push, pour, door, drawer, wipe or toss; of two bodies "
+            "hand_over."
         ),
     ],
     output: Annotated[Path, Option("--output", "-o", help="A new folder for the capture.")],
@@ -115,6 +117,9 @@ def perform(
     rate: Annotated[float, Option(help="Frames a second.", min=10.0, max=480.0)] = 60.0,
     noisy: Annotated[bool, Option("--noisy", help="As of a magnetic tracker.")] = False,
     seed: Annotated[int, Option(help="The draw of the noise.", min=0)] = 3,
+    rig: Annotated[
+        str, Option(help="hands: hands, head and eyes; thesis: and eight more over the body.")
+    ] = "hands",
 ) -> None:
     """Let a virtual body perform an action, and write the capture.
 
@@ -132,12 +137,14 @@ def perform(
 
     check_new_folder(output)
     if action in JOINT_ACTIONS:
+        if rig != "hands":
+            raise CaparError(f"--rig is of one performer, and {action} is of two; leave it out")
         one, other, *_ = (*agent.split("+"), *agent.split("+"))
         made = performed_together(action, (one, other), rate_hz=rate)
         capture = joint_capture(action, (one, other), rate_hz=rate, noisy=noisy, seed=seed)
         truth, who = truth_together(made), f"a {one} and a {other}"
     else:
-        capture = action_capture(action, agent, rate_hz=rate, noisy=noisy, seed=seed)
+        capture = action_capture(action, agent, rate_hz=rate, noisy=noisy, seed=seed, rig=rig)
         truth, who = truth_of(performed(action, agent, rate_hz=rate)), f"a {agent}"
     write_bundle(capture, truth, output)
     typer.echo(

@@ -15,11 +15,11 @@ from capar.body.human import Human
 from capar.body.performing import Performance
 from capar.body.recording import Truth, joined, record, write_bundle
 from capar.body.scripts import SIDES
-from capar.body.sensors import PERFECT, Tracker
+from capar.body.sensors import PERFECT, Tracker, places
 from capar.body.shapes import segment_surface
 from capar.body.skeleton import eyes_between
 from capar.body.virtual_scenes import Thing, box
-from capar.model.capture import Agent, Capture, Role, Sensor, Shape, Stream, TagObject, TagType
+from capar.model.capture import Capture, Role, Sensor, Shape, Stream, TagObject, TagType
 from capar.model.errors import CaparError, FileError
 from capar.model.geometry import runs
 from capar.regeneration.hand_overs import JointMotion
@@ -32,23 +32,22 @@ from capar.regeneration.stepping import Stepping
 def capture_of(
     motion: Motion, *, name: str, agent: str, tracker: Tracker = PERFECT, seed: int = 0
 ) -> Capture:
-    """What a tracker would have recorded of a motion; without faults, unless stated."""
+    """What a tracker would have recorded of a motion; without faults, unless stated.
+
+    Worn are sensors on head and acting hands, and what else the recorded performer wore.
+    """
     plan = motion.plan
     made = Performance(
         human=plan.human, scene=virtual_scenes.Scene(plan.scene.things), script=(),
         times=np.array(plan.source.times), motion=motion.postures, things=plan.things,
         phases=(), gazes=plan.looks, looks=(), slip_m={},
     )  # fmt: skip
-    worn = (*(f"{side}_hand" for side in plan.hands), "head")
-    who = _agent(agent, plan.human)
-    return record(made, name=name, seed=seed, tracker=tracker, sensors=worn, agent=who)
-
-
-def _agent(name: str, human: Human) -> Agent:
-    measures = human.measures
-    kind = "child" if measures.adult_share < 0.5 else measures.adult
-    stated = {key: round(value, 4) for key, value in measures.values.items()}
-    return Agent(name, kind, {"age": measures.age, **stated})
+    hands = tuple(f"{side}_hand" for side in plan.hands)
+    recorded = (each.name for each in plan.source.capture.sensors if each.name in places())
+    worn = tuple(dict.fromkeys((*hands, "head", *recorded)))
+    return record(
+        made, name=name, seed=seed, tracker=tracker, sensors=worn, acting=hands, agent=agent
+    )
 
 
 def renamed(capture: Capture, names: Mapping[str, str]) -> Capture:
@@ -425,7 +424,7 @@ def capture_of_steps(made: Stepping, *, name: str, agent: str) -> Capture:
     worn = tuple(f"{side}_{part}" for part in ("hand", "foot") for side in SIDES)
     capture = record(
         moved, name=name, seed=0, tracker=PERFECT, sensors=(*worn, "head"), eye_tracker=False,
-        agent=_agent(agent, human),
+        agent=agent,
     )  # fmt: skip
     sensors = []
     for sensor in capture.sensors:

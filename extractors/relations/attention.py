@@ -12,7 +12,7 @@ from jaxtyping import Float, Int
 
 from capar.model.capture import Capture, Sensor
 from capar.model.geometry import Places, Series
-from extractors.bodies.bodies import TRUNK, Bodies
+from extractors.bodies.bodies import Bodies
 from extractors.bodies.poses import Poses, rotation_matrices
 from extractors.contact.surfaces import Surface, surface
 from extractors.signals.intervals import Interval, intervals
@@ -32,16 +32,15 @@ BEHIND_M = 1e-6
 
 
 def seeing(capture: Capture) -> tuple[Sensor, ...]:
-    """Every sensor with a line of sight: heads, and what attends and is no trunk.
+    """Every sensor with a line of sight: heads and eyes, not what attends elsewhere on the body.
 
     Eyes are left out beside a head of the same agent, which then looks with them.
     """
-    attending = {sensor.name for sensor in capture.attending if sensor.end_effector not in TRUNK}
     lent = {eyes.name for head in capture.sensors for eyes in _eyes_of(capture, head)}
     return tuple(
         sensor
         for sensor in capture.sensors
-        if (sensor.name in attending or sensor.end_effector == HEAD) and sensor.name not in lent
+        if sensor.end_effector in (HEAD, EYES) and sensor.name not in lent
     )
 
 

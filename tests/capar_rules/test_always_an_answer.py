@@ -13,6 +13,7 @@ from random import Random
 from typing import Any
 
 import pytest
+from bundles import DRINKING
 from exit_codes import exit_code
 
 from capar.model.errors import NoAnswerError
@@ -27,7 +28,6 @@ from capar_rules.movers.movers import RULES, movers
 from capar_rules.pars.inference import infer
 
 WORLDS = int(os.environ.get("CAPAR_WORLDS", "300"))
-DEMO = rule_file("").parent / "capar" / "demo" / "drink_from_mug"
 EXTENDED, THESIS = profile("extended"), profile("thesis")
 OF_MOVERS = {
     "displaced",
@@ -191,7 +191,7 @@ def test_an_observation_without_an_answer_leaves_a_file_that_can_be_sent(
     monkeypatch.chdir(tmp_path)
     rules = forbidding(tmp_path)
     monkeypatch.setattr("capar.cli.options.rule_base", lambda *_, **__: rules)
-    assert exit_code(monkeypatch, "observe", str(DEMO)) == 1
+    assert exit_code(monkeypatch, "observe", str(DRINKING)) == 1
     captured = capsys.readouterr()
     assert captured.out == ""
     assert str(tmp_path / "forbids.lp") in captured.err

@@ -4,6 +4,7 @@ from itertools import combinations
 from pathlib import Path
 
 import pytest
+from bundles import DRINKING
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -12,7 +13,6 @@ from capar_rules.authoring.drafting import conditions, distinction
 from capar_rules.authoring.user_primitives import read_examples, try_rule
 from capar_rules.engine.profiles import profile
 
-DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"
 FEW = conditions()[:6]
 
 BITS = st.frozensets(st.sampled_from(FEW))
@@ -34,7 +34,7 @@ def test_conditions_tell_it_from_all_that_can_be_told_and_none_is_needless(
 
 @pytest.mark.long
 def test_a_draft_holds_by_its_own_short_examples_and_says_what_it_left_out(tmp_path: Path) -> None:
-    text = rule_from_segment("BringUp", f"{DEMO}/right_hand/2", rules=profile())
+    text = rule_from_segment("BringUp", f"{DRINKING}/right_hand/2", rules=profile())
     path = tmp_path / "bring_up.lp"
     path.write_text(text)
     assert 'fits(Segment, "MoveObjTo"),\n    rises(Segment, _).' in text

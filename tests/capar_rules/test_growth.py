@@ -8,6 +8,7 @@ from typing import Any
 
 import clingo
 import pytest
+from bundles import DRINKING
 from clingo import ast
 
 from capar.model.capture import Capture
@@ -16,18 +17,17 @@ from capar.pipelines.observation import facts_program
 from capar_rules.borders.numbering import number_borders
 from capar_rules.engine import solver
 from capar_rules.engine.profiles import profile
-from capar_rules.engine.solver import fingerprint, reduced, rule_file, solve
+from capar_rules.engine.solver import fingerprint, reduced, solve
 from capar_rules.lint.audit import PROFILES
 from extractors.readers.bundle.capture_toml import read_capture
 
-DEMO = Path(str(rule_file(""))).parent / "capar/demo/drink_from_mug"
 SHORT, LONG = 8, 32
 """How often the demo is repeated: half a minute and two minutes of it."""
 
 
 @cache
 def demo() -> tuple[Fact, ...]:
-    capture: Capture = read_capture(DEMO)
+    capture: Capture = read_capture(DRINKING)
     return facts_program(capture)[0].facts
 
 

@@ -7,8 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from bundles import DRINKING
 from observations import drink_from_mug, pick_up_with_both_hands
-from shell import DEMO, capar, refused, run
+from shell import capar, refused, run
 
 from capar.model.errors import FileError, UnknownNameError
 from capar.model.observation import SegmentAddress
@@ -93,7 +94,7 @@ def test_one_at_a_terminal_is_asked_before_an_actionary_is_made(
 def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An Actionary with the demo and a name, a border, a split and a join by Ada."""
     folder = tmp_path_factory.mktemp("corrected") / "actionary"
-    run("observe", DEMO, "--actionary", folder, "--new")
+    run("observe", DRINKING, "--actionary", folder, "--new")
     changes = ((3, "--name", "Sip"), (1, "--start", 0.7), (6, "--split", 3.5), (4, "--join"))
     for segment, *change in changes:
         address = f"{CAPTURE}/right_hand/{segment}"
@@ -135,7 +136,7 @@ def test_the_account_scores_the_rules_as_labels_without_a_mapping(
     run("correct", CAPTURE, "--labels", labels, "--actionary", place)
     rows = list(csv.DictReader(labels.open(encoding="utf-8")))
     assert [row["label"] for row in rows] == NAMES
-    result = json.loads(run("evaluate", DEMO, labels, "--json"))
+    result = json.loads(run("evaluate", DRINKING, labels, "--json"))
     # labels and segments agree but where Ada said otherwise: in the sip, the hold, and 0.14 s
     differs = 0.242 + 0.213 + (0.7 - 0.561)
     assert result["all"]["accuracy"] == pytest.approx(100 * (1 - differs / 3.88), abs=1.0)
@@ -144,7 +145,7 @@ def test_the_account_scores_the_rules_as_labels_without_a_mapping(
 
 def test_claims_stay_when_the_capture_is_observed_again_and_this_is_said(place: Path) -> None:
     before = account(place)
-    done = capar("observe", DEMO, "--actionary", place)
+    done = capar("observe", DRINKING, "--actionary", place)
     assert f"Ada corrected some of these segments (`capar correct {CAPTURE}`)" in done.stderr
     assert account(place) == before
 
@@ -196,7 +197,7 @@ COMMANDS = (
     ("query", "actions", "--time-limit", "10"),
     ("export",),
     ("forget", "DrinkFromMug"),
-    ("observe", DEMO, "--on-unknown", "keep"),
+    ("observe", DRINKING, "--on-unknown", "keep"),
 )
 
 

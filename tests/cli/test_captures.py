@@ -11,7 +11,8 @@ from pathlib import Path
 
 import motion_files as samples
 import pytest
-from shell import DEMO, capar, run
+from bundles import DRINKING
+from shell import capar, run
 
 from capar.model.calibration import Calibration
 from capar.model.errors import CaparError, FileError, UnknownNameError
@@ -70,9 +71,11 @@ def test_inspect_of_a_bundle_names_its_sensors_and_near_pairs(tmp_path: Path) ->
 
 
 def test_inspect_prints_the_calibration_as_tables_and_as_json() -> None:
-    known = calibrate(read_capture(DEMO))
-    assert value_from_json(run("inspect", DEMO, "--calibration", "--json"), Calibration) == known
-    tables = run("inspect", DEMO, "--calibration")
+    known = calibrate(read_capture(DRINKING))
+    assert (
+        value_from_json(run("inspect", DRINKING, "--calibration", "--json"), Calibration) == known
+    )
+    tables = run("inspect", DRINKING, "--calibration")
     assert f"{1e3 * known.contact_tolerance_m:.2f} mm" in tables
     assert f"{1e3 * known.tag_object('mug').noise_m:.2f}" in tables
     assert "median" in tables
@@ -126,7 +129,7 @@ def test_what_a_simulated_tracker_sends_is_told(kind: str) -> None:
 
 
 def test_a_capture_that_is_played_is_recorded_as_a_bundle(tmp_path: Path) -> None:
-    with simulated("motionstar", "--capture", DEMO) as address:
+    with simulated("motionstar", "--capture", DRINKING) as address:
         said = run("record", address, tmp_path / "trial", "--seconds", "2")
     assert "0 poses lost" in said
     capture = read_capture(tmp_path / "trial")

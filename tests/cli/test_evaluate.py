@@ -4,9 +4,10 @@ import json
 from pathlib import Path
 
 import pytest
+from bundles import DRINKING
 from pympi import Eaf
-from shell import DEMO, run
 from shell import refused as refusal
+from shell import run
 
 from capar.pipelines.observation import observe
 
@@ -28,7 +29,7 @@ def segments() -> list[tuple[str, float, float, str]]:
             each.end_s,
             next((word for word in words if word in (each.name, *each.general)), "other"),
         )
-        for each in observe(DEMO).segments
+        for each in observe(DRINKING).segments
     ]
 
 
@@ -39,7 +40,7 @@ def options(folder: Path) -> tuple[object, ...]:
 
 
 def evaluated(*arguments: object) -> dict:
-    out: dict = json.loads(run("evaluate", DEMO, *arguments, "--json"))
+    out: dict = json.loads(run("evaluate", DRINKING, *arguments, "--json"))
     return out
 
 
@@ -88,7 +89,7 @@ def test_a_bad_label_file_is_refused_with_file_and_line(
 ) -> None:
     path = tmp_path / "labels.csv"
     path.write_text(text)
-    assert says in refusal("evaluate", DEMO, path, *options(tmp_path))
+    assert says in refusal("evaluate", DRINKING, path, *options(tmp_path))
 
 
 def test_labels_may_be_of_a_part_of_the_time_and_of_few_actions(
@@ -129,8 +130,8 @@ def test_a_hand_may_do_events_that_are_segments(tmp_path: Path) -> None:
     ("arguments", "says"),
     [
         (["a.toml", "--kind", "carries"], "an evaluation file says itself what --kind would say"),
-        ([DEMO, "l.csv", "--takes", "x"], "--takes belongs to an evaluation file"),
-        ([DEMO, "l.csv", DEMO], "3 arguments: each capture is followed by its label"),
+        ([DRINKING, "l.csv", "--takes", "x"], "--takes belongs to an evaluation file"),
+        ([DRINKING, "l.csv", DRINKING], "3 arguments: each capture is followed by its label"),
     ],
 )
 def test_arguments_that_do_not_fit_are_refused(arguments: list[str], says: str) -> None:

@@ -6,14 +6,15 @@ from pathlib import Path
 
 import motions
 import pytest
-from shell import DEMO, run
+from bundles import DRINKING
+from shell import run
 from write_demo import write_tables
 
 THESIS = ["--profile", "thesis"]
 
 
 def answered(*arguments: str) -> str:
-    return run("explain", DEMO, *arguments)
+    return run("explain", DRINKING, *arguments)
 
 
 def test_one_segment_has_the_table_of_its_conditions_and_a_tree_down_to_its_frames():

@@ -6,12 +6,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from bundles import DRINKING
 from lsl_loopback import LOOPBACK
-from shell import DEMO
 
 from capar.pipelines.live.event_socket import EventSocket
 
-OBSERVE = ("-c", "from capar.cli import main; main()", "observe", "--live", DEMO, "--json")
+OBSERVE = ("-c", "from capar.cli import main; main()", "observe", "--live", DRINKING, "--json")
 
 OF_WEBSOCKET = """
 import sys

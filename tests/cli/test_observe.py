@@ -9,7 +9,8 @@ from pathlib import Path
 import jsonschema
 import motions
 import pytest
-from shell import DEMO, capar, refused, run
+from bundles import DRINKING
+from shell import capar, refused, run
 
 from capar.model.capture import Capture, Stream
 from capar.model.json_form import from_json, published_schema
@@ -49,7 +50,7 @@ def lifted(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_tables_show_segments_and_steps() -> None:
-    done = capar("observe", DEMO, *THESIS, "--plot", "out.png")
+    done = capar("observe", DRINKING, *THESIS, "--plot", "out.png")
     steps = [line.split()[1] for line in done.stdout.split("\n\n")[1].splitlines()[1:]]
     assert steps == STEPS
     assert "note [contact-tolerance]" in done.stderr
@@ -57,7 +58,7 @@ def test_the_tables_show_segments_and_steps() -> None:
 
 
 def test_a_take_is_asked_for_by_the_name_by_which_it_was_observed() -> None:
-    shutil.copytree(DEMO, "kitchen")
+    shutil.copytree(DRINKING, "kitchen")
     text = Path("kitchen/capture.toml").read_text()
     text = re.sub('^name = ".*"$', 'takes = ["motion"]', text, count=1, flags=re.MULTILINE)
     Path("kitchen/capture.toml").write_text(text.replace("motion.csv", "{take}.csv"))
@@ -72,7 +73,7 @@ def test_a_take_is_asked_for_by_the_name_by_which_it_was_observed() -> None:
 
 
 def test_json_keeps_to_the_published_schema_and_reads_back() -> None:
-    text = run("observe", DEMO, "--json")
+    text = run("observe", DRINKING, "--json")
     jsonschema.validate(json.loads(text), json.loads(published_schema("observation")))
     assert from_json(text).capture == "drink_from_mug_tall_man"
 
@@ -107,25 +108,28 @@ def test_a_name_that_is_asked_for_goes_beside_the_actionary_that_is_named() -> N
 
 
 def test_printed_facts_with_the_rule_files_are_a_program() -> None:
-    answer = solve([rule_file("thesis.lp")], run("facts", DEMO, *THESIS))
+    answer = solve([rule_file("thesis.lp")], run("facts", DRINKING, *THESIS))
     assert sorted(name for _, name in answer.of("named")) == sorted(STEPS)
 
 
 @pytest.mark.parametrize(
     ("asked", "told"),
     [
-        (("observe", DEMO, "--plot", "x.bmp"), "no picture format '.bmp'; there are: .png, .svg"),
-        (("observe", DEMO, "--plot", "no/x.png"), "No such file or directory"),
-        (("observe", DEMO, "--json", "--script"), "--json and --script print different things"),
-        (("observe", DEMO, "--script", "--pars"), "--script and --pars print different things"),
-        (("obsreve", DEMO), "Did you mean 'observe'?"),
-        (("observe", DEMO, "--actionary", "notes.md"), "is a file; an Actionary is a folder"),
-        (("observe", DEMO, "--profile", "theses"), "Did you mean 'thesis'?"),
+        (
+            ("observe", DRINKING, "--plot", "x.bmp"),
+            "no picture format '.bmp'; there are: .png, .svg",
+        ),
+        (("observe", DRINKING, "--plot", "no/x.png"), "No such file or directory"),
+        (("observe", DRINKING, "--json", "--script"), "--json and --script print different things"),
+        (("observe", DRINKING, "--script", "--pars"), "--script and --pars print different things"),
+        (("obsreve", DRINKING), "Did you mean 'observe'?"),
+        (("observe", DRINKING, "--actionary", "notes.md"), "is a file; an Actionary is a folder"),
+        (("observe", DRINKING, "--profile", "theses"), "Did you mean 'thesis'?"),
         (("observe", "--live"), "CAPTURE to replay, or --device"),
-        (("observe", "--live", DEMO, "--device", "lsl:x"), "CAPTURE to replay, or --device"),
+        (("observe", "--live", DRINKING, "--device", "lsl:x"), "CAPTURE to replay, or --device"),
         (("observe", "--live", "--device", "lsl:x"), "needs --rig"),
-        (("observe", "--live", "--device", "lsl:x", "--rig", DEMO), "needs --calibration"),
-        (("observe", "--live", DEMO, "--plot", "x.png"), "not for --live"),
+        (("observe", "--live", "--device", "lsl:x", "--rig", DRINKING), "needs --calibration"),
+        (("observe", "--live", DRINKING, "--plot", "x.png"), "not for --live"),
         (("observe",), "expected a CAPTURE"),
     ],
 )
@@ -138,19 +142,19 @@ def test_what_cannot_be_done_is_refused_before_anything_is_computed(
 
 
 def test_a_fitted_body_changes_nothing_where_its_parts_are_stated() -> None:
-    shutil.copytree(DEMO, "drunk")
+    shutil.copytree(DRINKING, "drunk")
     about = Path("drunk/capture.toml")
     about.write_text(f"to_s = 1.2\n{about.read_text()}")
     assert run("observe", "drunk", "--fit") == run("observe", "drunk")
 
 
 def test_a_replayed_capture_ends_in_what_observing_it_gives() -> None:
-    live = run("observe", "--live", DEMO, "--speed", "0", "--json")
+    live = run("observe", "--live", DRINKING, "--speed", "0", "--json")
     rows = [json.loads(line) for line in live.splitlines()]
     assert {each["event"] for each in rows} >= {"provisional", "settled", "observation"}
     told = [each for each in rows if each["event"] == "settled"]
     assert "drank from the mug" in " ".join(each["sentence"] for each in told)
-    whole = json.loads(run("observe", DEMO, "--json"))
+    whole = json.loads(run("observe", DRINKING, "--json"))
     assert rows[-1]["observation"] == whole
     assert [each["name"] for each in told] == [
         each["name"] for link in whole["links"] for each in link["segments"]

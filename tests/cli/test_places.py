@@ -16,10 +16,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from bundles import DRINKING
 
 from capar.cli.output import REMEDIES, error_message, written
 
-DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"
 CAPAR = Path(sys.executable).parent / "capar"
 SIP = """%* Sip: it is held to what it touches. *%
 primitive("Sip").
@@ -73,11 +73,11 @@ FAULTS = (
     (("rules", "list", "--rules", "unread"), "unread/sip.lp", "cannot be read"),
     (("rules", "list", "--rules", "shut"), "shut", "not readable"),
     (("inspect", "unread/motion.csv"), "unread/motion.csv", "Grant yourself read permission"),
-    (("explain", DEMO, "right_hand/2", "--plot", "ro/k.svg"), "ro/k.svg", "Permission denied"),
-    (("explain", DEMO, "right_hand/2", "--plot", "nowhere/k.svg"), "nowhere/k.svg",
+    (("explain", DRINKING, "right_hand/2", "--plot", "ro/k.svg"), "ro/k.svg", "Permission denied"),
+    (("explain", DRINKING, "right_hand/2", "--plot", "nowhere/k.svg"), "nowhere/k.svg",
      "No such file or directory"),
-    (("explain", DEMO, "right_hand/2", "--plot", "kept.svg"), "kept.svg", "Permission denied"),
-    (("new-capture", DEMO / "motion.csv", "-o", "ro/a/b"), "ro/a", "Permission denied"),
+    (("explain", DRINKING, "right_hand/2", "--plot", "kept.svg"), "kept.svg", "Permission denied"),
+    (("new-capture", DRINKING / "motion.csv", "-o", "ro/a/b"), "ro/a", "Permission denied"),
 )  # fmt: skip
 
 
@@ -161,8 +161,8 @@ def test_a_file_keeps_its_rights_and_links_to_it_and_a_device_stays_one(tmp_path
 @pytest.mark.parametrize(
     "arguments",
     [
-        ("observe", DEMO, "--plot", "k.svg"),
-        ("new-capture", DEMO / "motion.csv", "--force", "-o", "k.toml"),
+        ("observe", DRINKING, "--plot", "k.svg"),
+        ("new-capture", DRINKING / "motion.csv", "--force", "-o", "k.toml"),
         ("report", "linguistics", "--out", "k.txt"),
     ],
 )

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 import typer
-from shell import DEMO, capar, run
+from bundles import DRINKING
+from shell import capar, run
 
 from capar.cli import app
 from capar.model.errors import CaparError, FileError, RuleError
@@ -21,22 +22,22 @@ feature_row("Sip", hand, "101", "101", "10", "00").
 BAD = 'primitive("Bad").\n\nfits(Segment, "Bad") :- featurs(Segment, _, _, _, _).\n'
 
 COMMANDS = {
-    "describe": [DEMO],
-    "evaluate": [DEMO, "labels.csv", "--mapping", "mapping.toml"],
-    "explain": [DEMO],
-    "facts": [DEMO],
+    "describe": [DRINKING],
+    "evaluate": [DRINKING, "labels.csv", "--mapping", "mapping.toml"],
+    "explain": [DRINKING],
+    "facts": [DRINKING],
     "lexicon load": [],
-    "observe": [DEMO],
+    "observe": [DRINKING],
     "parse": ["move the mug to the table"],
     "report linguistics": [],
     "rules add": ["sip.lp"],
     "rules audit": [],
     "rules diff": ["sip.lp"],
     "rules list": [],
-    "rules new": ["Sip", "--from", f"{DEMO}/right_hand/2"],
-    "regenerate": ["--say", "drink from the mug", "--scene", DEMO],
+    "rules new": ["Sip", "--from", f"{DRINKING}/right_hand/2"],
+    "regenerate": ["--say", "drink from the mug", "--scene", DRINKING],
     "rules show": ["Reach"],
-    "view": [DEMO, "--html", "seen.html"],
+    "view": [DRINKING, "--html", "seen.html"],
     "rules test": ["sip.lp"],
     "rules words": [],
     "test": ["sip.motion.toml"],
@@ -56,9 +57,9 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.delenv("CAPAR_RULES", raising=False)
     Path("sip.lp").write_text(SIP)
     Path("sip.motion.toml").write_text(
-        f'captures = ["{Path(DEMO).name}"]\n[[expect]]\nthat = "right_hand Sip(mug, head)"\n'
+        f'captures = ["{Path(DRINKING).name}"]\n[[expect]]\nthat = "right_hand Sip(mug, head)"\n'
     )
-    Path(Path(DEMO).name).symlink_to(DEMO)
+    Path(Path(DRINKING).name).symlink_to(DRINKING)
     return tmp_path
 
 
@@ -122,7 +123,7 @@ def test_the_list_says_where_each_rule_comes_from():
 
 def test_rules_beside_the_actionary_name_what_is_observed_and_kept_there():
     kept("known/rules", "sip", SIP)
-    thesis = [DEMO, "--profile", "thesis"]
+    thesis = [DRINKING, "--profile", "thesis"]
     assert "Sip" not in run("observe", *thesis)
     assert "Sip" in run("observe", *thesis, "--actionary", "known")
     assert "Sip" in run("explain", *thesis, "--actionary", "known")
@@ -140,7 +141,7 @@ def test_claims_are_judged_with_the_rules_that_count():
 
 def test_a_rule_is_added_beside_the_actionary_that_is_named_and_removed_from_there():
     words = ["--general", "MoveObj", "--definition", "it is held to what it touches"]
-    seen = ["--from", f"{DEMO}/right_hand/2", "--profile", "thesis"]
+    seen = ["--from", f"{DRINKING}/right_hand/2", "--profile", "thesis"]
     example = run("rules", "new", "Sip", *seen, *words)
     other = (
         "\n%* Counter-example: a hand is laid on a table.\n"

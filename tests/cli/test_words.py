@@ -5,7 +5,8 @@ import re
 from pathlib import Path
 
 import pytest
-from shell import DEMO, capar, run
+from bundles import DRINKING
+from shell import capar, run
 
 from capar.model.errors import CaparError, UnknownNameError
 
@@ -21,10 +22,10 @@ def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_describe_tells_the_demo() -> None:
-    told = run("describe", DEMO)
+    told = run("describe", DRINKING)
     assert "lifted it to the head" in told
     assert told.count("\n") == 1
-    timed = json.loads(run("describe", DEMO, "--timed", "--detail", "summary", "--json"))
+    timed = json.loads(run("describe", DRINKING, "--timed", "--detail", "summary", "--json"))
     assert " s)" in timed["description"]
 
 
@@ -48,7 +49,7 @@ def test_verb_tells_what_it_knows() -> None:
 
 
 def test_verbs_fit_a_segment() -> None:
-    fits = json.loads(run("verb", "--for", f"{DEMO}/right_hand/2", "--json"))
+    fits = json.loads(run("verb", "--for", f"{DRINKING}/right_hand/2", "--json"))
     assert fits[0]["verb"] == "move"
     assert fits[0]["reasons"]
 
@@ -59,8 +60,8 @@ def test_verbs_fit_a_segment() -> None:
         (("verb",), CaparError),
         (("verb", "zzz"), UnknownNameError),
         (("verb", "--for", "nowhere"), CaparError),
-        (("verb", "--for", f"{DEMO}/right_hand/99"), UnknownNameError),
-        (("verb", "--for", f"{DEMO}/third_hand/0"), UnknownNameError),
+        (("verb", "--for", f"{DRINKING}/right_hand/99"), UnknownNameError),
+        (("verb", "--for", f"{DRINKING}/third_hand/0"), UnknownNameError),
         (("parse", "mvoe the mug"), CaparError),
         (("lexicon", "import", "propbank", "."), UnknownNameError),
         (("report", "linguistics", "--actionary", "missing"), CaparError),
@@ -90,7 +91,7 @@ def test_the_report_is_written_in_each_format(tmp_path: Path) -> None:
 
 
 def test_answers_are_told_to_the_millisecond_and_machines_get_every_digit() -> None:
-    run("observe", DEMO, "--actionary", "book")
+    run("observe", DRINKING, "--actionary", "book")
     asked = ("parse", "who moved the mug to the table?", "--actionary", "book")
     (answer,) = json.loads(run(*asked, "--json"))["answers"]
     exact = [each for each in answer.values() if isinstance(each, float)]

@@ -8,9 +8,10 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from bundles import DRINKING
 from observations import drink_from_mug, pick_up_with_both_hands
 from pympi import Eaf, TextGrid
-from shell import DEMO, refused, run
+from shell import refused, run
 
 from capar.evaluation.labelling import FORMS, label, write_labels
 from capar.evaluation.lerobot import write_subtasks
@@ -23,7 +24,7 @@ SEEN = [drink_from_mug(), pick_up_with_both_hands()]
 
 @pytest.fixture(scope="module")
 def demo() -> Any:
-    return observe(DEMO)
+    return observe(DRINKING)
 
 
 def segments_in_json(seen: Any) -> list[dict[str, Any]]:
@@ -139,7 +140,7 @@ def test_the_same_observation_gives_the_same_bytes(form: str, demo: Any, tmp_pat
 
 def test_two_captures_of_one_name_are_refused(demo: Any) -> None:
     with pytest.raises(CaparError, match="two captures are called 'drink_from_mug_tall_man'"):
-        list(label([demo, SEEN[1], DEMO]))
+        list(label([demo, SEEN[1], DRINKING]))
 
 
 def test_a_vocabulary_gives_other_labels_and_unknown_names_are_refused(
@@ -232,13 +233,13 @@ def test_a_capture_of_no_episode_and_two_hands_are_refused(demo: Any, tmp_path: 
 
 
 def test_the_command_writes_labels_and_refuses_what_does_not_fit(tmp_path: Path) -> None:
-    done = run("label", DEMO, "-o", tmp_path / "a.parquet", "--format", "parquet")
+    done = run("label", DRINKING, "-o", tmp_path / "a.parquet", "--format", "parquet")
     assert "13 rows of 1 capture" in done
     assert pq.read_table(tmp_path / "a.parquet").num_rows == 13
     out = tmp_path / "x"
     for arguments, wrong in (
-        ([DEMO, "-o", out, "--format", "elan", "--per-frame"], "elan has no rows by frame"),
-        ([DEMO, "-o", out, "--format", "lerobot"], "--format lerobot takes --dataset"),
+        ([DRINKING, "-o", out, "--format", "elan", "--per-frame"], "elan has no rows by frame"),
+        ([DRINKING, "-o", out, "--format", "lerobot"], "--format lerobot takes --dataset"),
         ([tmp_path / "none", "-o", out], "no capture here"),
     ):
         assert wrong in refused("label", *arguments)

@@ -9,7 +9,8 @@ import time
 from pathlib import Path
 
 import pytest
-from shell import DEMO, capar, refused, run
+from bundles import DRINKING
+from shell import capar, refused, run
 
 from capar.model.errors import CaparError
 from capar.pipelines.many import observe_many
@@ -23,9 +24,9 @@ from kb.exchange import export
 def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Five captures of the demo's motion under names of their own."""
     folder = tmp_path_factory.mktemp("many") / "study"
-    text = (Path(DEMO) / "capture.toml").read_text()
+    text = (DRINKING / "capture.toml").read_text()
     for n in range(5):
-        shutil.copytree(DEMO, folder / f"c{n}")
+        shutil.copytree(DRINKING, folder / f"c{n}")
         own = text.replace('name = "drink_from_mug_tall_man"', f'name = "c{n}"')
         (folder / f"c{n}" / "capture.toml").write_text(own)
     return folder
@@ -42,7 +43,7 @@ def test_patterns_mean_folders_takes_and_what_is_below(study: Path, tmp_path: Pa
     assert find_captures([str(study)]) == every
     assert find_captures([str(study / "c[01]"), every[1], every[3]]) == [*every[:2], every[3]]
     bundle = tmp_path / "bundle"
-    shutil.copytree(DEMO, bundle)
+    shutil.copytree(DRINKING, bundle)
     text = (bundle / "capture.toml").read_text()
     (bundle / "capture.toml").write_text(f'takes = ["a1", "a2", "b"]\n{text}')
     takes = [f"{bundle}:{each}" for each in ("a1", "a2", "b")]

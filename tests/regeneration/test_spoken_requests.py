@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import observations
 import pytest
+from bundles import DRINKING
 from exit_codes import exit_code
-from spoken_worlds import DEMO, RATE_HZ, words, world
+from spoken_worlds import RATE_HZ, words, world
 
 from capar.body.recording import Truth, write_bundle
 from capar.body.scripted_actions import action_capture
@@ -91,7 +92,7 @@ def test_what_is_asked_for_is_performed_in_the_scene_or_refused_and_nothing_is_w
     own, out = str(tmp_path / "own"), tmp_path / "out"
     touch = action_capture("touch", rate_hz=RATE_HZ)
     write_bundle(touch, Truth((), (), (), ()), tmp_path / "own")
-    where = ("--scene", str(DEMO), "--agent", "child", "--output", str(out))
+    where = ("--scene", str(DRINKING), "--agent", "child", "--output", str(out))
     assert exit_code(monkeypatch, "regenerate", own, "--say", "touch the apple", *where) == 2
     assert "there are mug, table" in capsys.readouterr().err
     assert not out.exists()

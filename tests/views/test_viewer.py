@@ -9,12 +9,12 @@ from base64 import b64decode
 from dataclasses import replace
 from io import BytesIO
 from itertools import combinations
-from pathlib import Path
 
 import motions
 import numpy as np
 import pytest
 import trimesh
+from bundles import DRINKING
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.image import imread
@@ -28,7 +28,6 @@ from capar.views.viewer.snapshot import Box, meet, place_labels, snapshot
 from capar.views.viewer.stage import stage, with_fingers
 from capar.views.viewer.web_page import web_page
 
-DEMO = Path(__file__).parents[2] / "capar" / "demo" / "drink_from_mug"
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 FLAGS = (
     "--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-sync",
@@ -161,7 +160,7 @@ def test_what_cannot_be_shown_is_said_and_nothing_is_written(
     arguments, told, tmp_path, monkeypatch, capsys
 ):
     given = [each.format(tmp_path) for each in arguments]
-    monkeypatch.setattr(sys, "argv", ["capar", "view", str(DEMO), *given])
+    monkeypatch.setattr(sys, "argv", ["capar", "view", str(DRINKING), *given])
     with pytest.raises(SystemExit) as ended:
         main()
     assert ended.value.code == 2

@@ -77,7 +77,9 @@ def read_mesh(path: Path) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarr
 def _plain_obj(data: bytes) -> "Mesh | None":
     """What an OBJ file holds that states corners and triangles alone; None of any other."""
     rows = [row for row in map(bytes.split, data.splitlines()) if row and row[0][:1] != b"#"]
-    if not {(row[0], len(row)) for row in rows} <= {(b"v", 4), (b"f", 4)} or b"_" in data:
+    if not {(row[0], len(row)) for row in rows} <= {(b"v", 4), (b"f", 4)}:
+        return None
+    if any(b"_" in cell for row in rows for cell in row):  # which Python takes in numbers
         return None
     corners, threes = ([row[1:] for row in rows if row[0] == kind] for kind in (b"v", b"f"))
     try:

@@ -252,7 +252,7 @@ class SensorEntry(Tracked):
     side: Literal["right", "left", "none"] = key("Its side.", "none")
     link: str | None = key("The chain that it ends, like right_arm; derived if not given.", None)
     role: Literal["acts", "attends"] | None = key(
-        "``acts`` makes segments, ``attends`` gives gaze; head and eyes attend, else acts.", None
+        "``acts`` makes segments, ``attends`` makes none; head and eyes attend, else acts.", None
     )
     gaze: Vector = key("Direction of sight in the sensor's frame.", [1.0, 0.0, 0.0])
     eye: Vector = key("Where sight starts in the sensor's frame.", [0.0] * 3, unit="m")

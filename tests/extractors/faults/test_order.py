@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bundles import DRINKING
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from motions import PERFORMERS, drink_from_mug
@@ -62,9 +63,9 @@ def test_bodies_that_turn_each_for_itself_show_no_order(seed: int, declared: str
 
 @pytest.mark.parametrize("order", ["xyzw", "wxyz"])
 def test_a_bundle_with_the_wrong_order_is_told_what_to_state(tmp_path: Path, order: str) -> None:
-    demo = read_capture(ROOT / "capar/demo/drink_from_mug")
+    demo = read_capture(DRINKING)
     write_tables(demo, tmp_path)
-    text = (ROOT / "capar/demo/drink_from_mug/capture.toml").read_text(encoding="utf-8")
+    text = (DRINKING / "capture.toml").read_text(encoding="utf-8")
     path = '{ path = "motion.csv", order = "' + order + '" }'
     changed = text.replace('motion = "motion.csv"', f"motion = {path}")
     assert changed != text

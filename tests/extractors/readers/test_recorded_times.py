@@ -5,6 +5,7 @@ from pathlib import Path
 
 import motion_files as samples
 import pytest
+from bundles import DRINKING
 from typer.testing import CliRunner
 
 from capar.cli import app
@@ -14,8 +15,6 @@ from extractors.readers.recording import iso_of_stamp, iso_time
 from extractors.readers.registry import read_recording
 from kb import Actionary
 from ontology import CAPAR
-
-DEMO = Path(__file__).parents[3] / "capar" / "demo" / "drink_from_mug"
 
 
 @pytest.mark.parametrize(
@@ -65,7 +64,7 @@ def test_a_bag_is_as_old_as_its_first_stamp_if_that_is_a_date(tmp_path: Path) ->
 
 def bundle(folder: Path, line: str) -> Path:
     """The demo with a line on top of its capture.toml."""
-    for each in DEMO.iterdir():
+    for each in DRINKING.iterdir():
         (folder / each.name).write_bytes(each.read_bytes())
     toml = folder / "capture.toml"
     toml.write_text(f"{line}\n{toml.read_text(encoding='utf-8')}", encoding="utf-8")
