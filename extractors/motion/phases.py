@@ -59,10 +59,10 @@ def turns_of_height(
     """Frames at which a body that rose steeply by a real way begins to sink by one.
 
     They lie in the middle of the longest level part between the two, of those before its first
-    pause if there are any; or, where there is none, in the middle between the end of the rise and
-    the beginning of the sink, which a pause in the air alone makes needless. Where the body
-    comes to touch another in between, its way has ended there. A sink that such a frame begins ends
-    at the next one, if the body then rises again.
+    pause if there are any (where it is lost is no pause); or, where there is none, in the middle
+    between the end of the rise and the beginning of the sink, which a pause in the air alone makes
+    needless. Where the body comes to touch another in between, its way has ended there. A sink that
+    such a frame begins ends at the next one, if the body then rises again.
 
     ``found``: phases, in time; a motion's follow each other without a gap. ``middles``: places of
     the body [m]. ``met``: frames at which it begins to touch another body that does not move it.
@@ -87,14 +87,20 @@ def turns_of_height(
 
 def _turn(rise: Phase, between: Sequence[Phase], sink: Phase, middles: Places) -> list[int]:
     parts = [rise, *between, sink]
-    rests = [row for row, (one, two) in enumerate(pairwise(parts), 1) if one.last != two.first]
+    gaps = [row for row, (one, two) in enumerate(pairwise(parts), 1) if one.last != two.first]
+    rests = [row for row in gaps if not _lost_between(parts[row - 1], parts[row], middles)]
     first = parts[: rests[0]] if rests else parts
     level = [phase for phase in first if phase.kind == LEVEL]
     level = level or [phase for phase in between if phase.kind == LEVEL]
     if level:
         longest = max(level, key=lambda phase: _way(phase, middles))
         return [(longest.first + longest.last) // 2]
-    return [] if rests else [(rise.last + sink.first) // 2]
+    return [] if gaps else [(rise.last + sink.first) // 2]
+
+
+def _lost_between(one: Phase, other: Phase, middles: Places) -> bool:
+    """Whether a body is lost between two phases, rather than at rest."""
+    return bool(np.isnan(middles[one.last : other.first + 1]).any())
 
 
 def _parts(body: BodyGeometry, span: slice, rate_hz: float, thresholds: Thresholds) -> list[Phase]:
