@@ -43,7 +43,7 @@ class Live(Panel):
             )
         )
         self._source = gui.add_dropdown("source", (SIMULATED, ADDRESS))
-        self._address = gui.add_text("address", "", hint=f"Such as {next(iter(EXAMPLES.values()))}")
+        self._address = gui.add_text("tracker", "", hint=f"Such as {next(iter(EXAMPLES.values()))}")
         self._lead_in = gui.add_number(
             "lead-in [s]", 0.0, min=0.0, step=0.5, hint="Calibrate by these; 0: as the capture was."
         )
