@@ -139,7 +139,7 @@ class Surroundings:
         ends = np.zeros(6)
         found = mujoco.mj_geomDistance(self.model, self.data, geom, self.geoms[name], NEAR_M, ends)
         spot, normal = ends[:3], (ends[3:] - ends[:3]) * np.sign(found)
-        if found < 0.0 and self._apart(geom, name, HEAD_CLEAR_M) >= found:
+        if found < 0.0 and self._apart(geom, name, NEAR_M) >= found:
             spot, normal = self._nearest(geom, name)
         moves = np.empty((3, self.model.nv))
         mujoco.mj_jac(self.model, self.data, moves, None, spot, self.model.geom_bodyid[geom])
@@ -185,7 +185,7 @@ class Surroundings:
         self, geom: int, name: str
     ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
         """The point of a hollow object's surface next to a part, and the way out to it [m, 1]."""
-        local = self._surface(geom, name, HEAD_CLEAR_M)
+        local = self._surface(geom, name, NEAR_M)
         point = local[int(_depths(local, self.model, geom).argmin())]
         steps = point + DIFFERENCE_M * np.concatenate([np.eye(3), -np.eye(3)])
         ahead, back = _depths(steps, self.model, geom).reshape(2, 3)
