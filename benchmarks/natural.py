@@ -41,7 +41,8 @@ RATE_HZ = 30.0
 CUTOFF_HZ = 6.0  # Everything is filtered so before it is derived, as recordings have noise [Hz].
 MOVING_MPS = 0.05  # A hand that is slower than this is at rest [m/s].
 BENT_M = 0.03  # An elbow that is nearer to the line from shoulder to hand swings about nothing [m].
-FACED_RAD = float(np.radians(30.0))  # What is nearer to where the face points is faced [rad].
+FACED_RAD = float(np.radians(30.0))  # What is less far aside of the face is faced [rad].
+WALKS_M = 0.1  # Feet that go further step [m].
 SIDES = ("right", "left")
 
 
@@ -106,8 +107,9 @@ def measured(
     leads = []
     for side, frame in goals:
         aims = where[f"{side}_hand"][0][frame] - spots
-        angles = np.arccos((aims * ahead).sum(axis=1) / np.linalg.norm(aims, axis=1))
-        away = np.flatnonzero(angles[: frame + 1] > FACED_RAD)
+        bearings = (np.arctan2(each[:, 1], each[:, 0]) for each in (aims, ahead))
+        turned_rad = np.abs(np.remainder(np.subtract(*bearings) + np.pi, 2.0 * np.pi) - np.pi)
+        away = np.flatnonzero(turned_rad[: frame + 1] > FACED_RAD)
         leads.append(float(frame - (away[-1] + 1 if len(away) else 0)) / rate_hz)
     return Measured(joints, hands, swings, slid, leads)
 
@@ -134,7 +136,8 @@ def line(name: str, found: Sequence[Measured]) -> str:
         cells += [f"{np.percentile(c, 95):.1f}, {c.max():.1f}" for c in every.T]
     swings = np.degrees(np.concatenate([s for each in found for s in each.swings]))
     cells.append(f"{np.percentile(swings, 95):.0f}, {swings.max():.0f}")
-    cells.append(f"{1e3 * max(each.slid_m for each in found):.1f}")
+    slid_m = max(each.slid_m for each in found)
+    cells.append("walk" if slid_m > WALKS_M else f"{1e3 * slid_m:.1f}")
     leads = [lead for each in found for lead in each.leads_s]
     cells.append(f"{np.median(leads):.2f}, {min(leads):.2f}" if leads else "-")
     return f"| {name} | {len(found)} | {' | '.join(cells)} |"
