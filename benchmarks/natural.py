@@ -2,14 +2,15 @@
 
 ``python benchmarks/natural.py [ACTION ...] [--pictures FOLDER]``: speeds, accelerations and jerk of
 joints and hands, how fast elbows swing about the line from shoulder to hand, how far feet slide,
-and how long before the hand the face turns to where the hand goes. ``all`` are ten actions. People
+and how long before the hand comes somewhere it is looked there. ``all`` are ten actions. People
 are bodies fitted to the recordings of others, where these are.
 """
 
 import argparse
 import os
+import tempfile
 from collections.abc import Iterable, Iterator, Sequence
-from io import BytesIO
+from dataclasses import replace
 from itertools import chain, pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -17,11 +18,12 @@ from typing import NamedTuple
 import numpy as np
 import scene
 from jaxtyping import Float
-from PIL import Image
+from PIL import Image, ImageChops, ImageOps
 from scipy.signal import butter, sosfiltfilt
 from scipy.spatial.transform import Rotation
 
 from capar.body.body_fitting import fit_body
+from capar.body.gaze_control import lines_of_sight
 from capar.body.human import Human
 from capar.body.scripted_actions import action_capture
 from capar.body.sensor_fitting import Fit
@@ -30,7 +32,7 @@ from capar.regeneration.captures import capture_of
 from capar.regeneration.motion import Motion
 from capar.regeneration.search import regenerate
 from capar.views.viewer.snapshot import snapshot
-from capar.views.viewer.stage import Stage, stage, with_mannequin
+from capar.views.viewer.stage import Stage, body_parts, is_ground, stage
 from extractors.readers.bundle.capture_toml import read_capture
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -41,7 +43,7 @@ RATE_HZ = 30.0
 CUTOFF_HZ = 6.0  # Everything is filtered so before it is derived, as recordings have noise [Hz].
 MOVING_MPS = 0.05  # A hand that is slower than this is at rest [m/s].
 BENT_M = 0.03  # An elbow that is nearer to the line from shoulder to hand swings about nothing [m].
-FACED_RAD = float(np.radians(30.0))  # What is less far aside of the face is faced [rad].
+LOOKED_RAD = float(np.radians(12.0))  # What is nearer to the line of sight is looked at [rad].
 WALKS_M = 0.1  # Feet that go further step [m].
 SIDES = ("right", "left")
 
@@ -60,7 +62,7 @@ class Measured(NamedTuple):
 
     slid_m: float
     leads_s: list[float]
-    """How long before the hand comes to where it goes the face points there for good [s]."""
+    """How long before the hand comes to where it goes it is looked there for good [s]."""
 
 
 def derived(values: Float[np.ndarray, "frames 3"], rate_hz: float) -> Float[np.ndarray, "frames 3"]:
@@ -85,7 +87,7 @@ def measured(
     """What is measured of a motion; goals are sides of hands, and when they come there."""
     chain_of = ("thorax_upper", "upper_arm", "forearm", "hand")
     names = [name if name == chain_of[0] else f"{s}_{name}" for s in SIDES for name in chain_of]
-    where = human.sites(postures, {*names, "between_eyes", "right_foot", "left_foot"})
+    where = human.sites(postures, {*names, "right_foot", "left_foot"})
     joints, hands, swings = [], [], []
     for at in (0, 4):
         own = names[at : at + 4]
@@ -102,15 +104,13 @@ def measured(
         swings.append(_swing(*spots)[moves[1:]] * rate_hz)
     feet = (where[f"{side}_foot"][0] for side in SIDES)
     slid = max(float(np.linalg.norm(spots - spots[0], axis=1).max()) for spots in feet)
-    spots, turned = where["between_eyes"]
-    ahead = Rotation.from_quat(turned, scalar_first=True).apply([1.0, 0.0, 0.0])
     leads = []
     for side, frame in goals:
+        spots, ways = lines_of_sight(human, postures[: frame + 1])
         aims = where[f"{side}_hand"][0][frame] - spots
-        bearings = (np.arctan2(each[:, 1], each[:, 0]) for each in (aims, ahead))
-        turned_rad = np.abs(np.remainder(np.subtract(*bearings) + np.pi, 2.0 * np.pi) - np.pi)
-        away = np.flatnonzero(turned_rad[: frame + 1] > FACED_RAD)
-        leads.append(float(frame - (away[-1] + 1 if len(away) else 0)) / rate_hz)
+        off = np.arccos((aims * ways).sum(axis=1) / np.linalg.norm(aims, axis=1))
+        away = np.flatnonzero(off > LOOKED_RAD)
+        leads.append((frame - (int(away[-1]) + 1 if len(away) else 0)) / rate_hz)
     return Measured(joints, hands, swings, slid, leads)
 
 
@@ -149,13 +149,11 @@ def people() -> Iterator[tuple[str, list[Measured]]]:
     reaches, carries = [], []
     for file in sorted((folder / "smartbody_mocap_reaching" / "npz").glob("*.npz")):
         made = _fitted(f"{EXAMPLES / 'smartbody_mocap_reaching'}:{file.stem}")
-        apex = int(np.argmin(np.abs(made.times - float(np.load(file)["apex_time"]))))
-        reaches.append(_of_fit(made, [("right", apex)]))
+        reaches.append(_of_fit(made))
     yield "people reaching (smartbody_mocap_reaching)", reaches
     for file in sorted((folder / "omomo_intermimic" / "npz").glob("sub2_*.npz")):
         made = _fitted(f"{EXAMPLES / 'omomo_intermimic' / 'capture.toml'}:{file.stem}")
-        first = int(np.argmax(np.load(file)["contact_obj"] > 0))
-        carries.append(_of_fit(made, [("right", first)]))
+        carries.append(_of_fit(made))
     yield "people carrying (omomo_intermimic)", carries
 
 
@@ -163,9 +161,9 @@ def _fitted(place: str) -> Fit:
     return fit_body(place, read_capture(place))
 
 
-def _of_fit(made: Fit, goals: list[tuple[str, int]]) -> Measured:
+def _of_fit(made: Fit) -> Measured:
     rate_hz = (len(made.times) - 1) / float(made.times[-1] - made.times[0])
-    return measured(made.human, made.motion, rate_hz, goals)
+    return measured(made.human, made.motion, rate_hz, ())
 
 
 def of_motion(motion: Motion) -> Measured:
@@ -176,21 +174,23 @@ def of_motion(motion: Motion) -> Measured:
 
 
 def staged(motion: Motion) -> Stage:
-    """A regenerated motion as it is shown: the body and the objects."""
-    plan, times = motion.plan, motion.plan.source.times
-    shown = stage(capture_of(motion, name=plan.source.capture.name, agent=""))
-    shown = with_mannequin(shown, Fit(plan.human, times, motion.postures, {}, {}, {}, 0.0))
-    return without_sensors(shown)
+    """A regenerated motion as it is shown: the body with its fingers, and the objects."""
+    source = motion.plan.source
+    shown = stage(capture_of(motion, name=source.capture.name, agent=""))
+    human, postures = motion.fingered
+    parts = body_parts(human, postures[np.searchsorted(source.times, shown.times)])
+    return bodies_alone(replace(shown, bodies=(*shown.bodies, *parts)))
 
 
-def without_sensors(shown: Stage) -> Stage:
-    """The stage with bodies and objects alone."""
-    bodies = tuple(b for b in shown.bodies if b.kind not in {"sensor", "looks", "self"})
-    return Stage(shown.title, shown.times, bodies)
+def bodies_alone(shown: Stage) -> Stage:
+    """The stage without sensors and floors."""
+    kept = (b for b in shown.bodies if b.kind not in {"sensor", "looks", "self"})
+    return replace(shown, bodies=tuple(b for b in kept if not is_ground(b)))
 
 
-WIDE, TALL, COLOURS = 300, 233, 48
-"""Width and height of one moment, and how many colours a sheet has [1]."""
+WIDE, TALL, COLOURS, TITLE = 300, 320, 48, 0.07
+"""Width and height of one moment, how many colours a sheet has, and the share of the height of a
+picture that its title has [1]."""
 
 
 def sheet(rows: Sequence[tuple[Stage, Sequence[float]]], path: Path) -> None:
@@ -198,12 +198,22 @@ def sheet(rows: Sequence[tuple[Stage, Sequence[float]]], path: Path) -> None:
     most = max(len(moments) for _, moments in rows)
     page = Image.new("RGB", (WIDE * most, TALL * len(rows)), "white")
     for down, (shown, moments) in enumerate(rows):
-        for across, time_s in enumerate(moments):
-            drawn = BytesIO()
-            snapshot(shown, float(time_s), drawn)
-            small = Image.open(drawn).convert("RGB").resize((WIDE, TALL), Image.Resampling.LANCZOS)
-            page.paste(small, (WIDE * across, TALL * down))
+        drawn = [_drawn(shown, float(time_s)) for time_s in moments]
+        boxes = np.array([ImageChops.invert(one).getbbox() for one in drawn])
+        box = (*boxes[:, :2].min(axis=0), *boxes[:, 2:].max(axis=0))
+        for across, one in enumerate(drawn):
+            small = ImageOps.contain(one.crop(box), (WIDE - 12, TALL - 12))
+            corner = np.array([across, down]) * (WIDE, TALL) + 6
+            page.paste(small, tuple(int(each) for each in corner))
     page.quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+
+
+def _drawn(shown: Stage, time_s: float) -> Image.Image:
+    """A moment, without its title."""
+    with tempfile.NamedTemporaryFile(suffix=".png") as file:
+        snapshot(shown, time_s, Path(file.name))
+        made = Image.open(file.name).convert("RGB")
+    return made.crop((0, round(TITLE * made.height), made.width, made.height))
 
 
 def main() -> None:
@@ -215,7 +225,7 @@ def main() -> None:
     actions = asked.actions or ["touch", "drink"]
     print("95 % of frames, worst; joints in rad/s and its derivatives, hands in m/s likewise")
     print("| who | motions | joint speed | acceleration | jerk | hand speed | acceleration | jerk "
-          "| swing of elbows [deg/s] | feet [mm] | face before hand, least [s] |")  # fmt: skip
+          "| swing of elbows [deg/s] | feet [mm] | gaze before hand, least [s] |")  # fmt: skip
     print("|---" * 11 + "|")
     if scene.recordings():
         for name, found in people():

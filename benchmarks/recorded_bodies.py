@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import scene
-from natural import sheet, staged, without_sensors
+from natural import bodies_alone, sheet, staged
 
 from capar.body.body_fitting import fit_body, ground, whole_body
 from capar.body.sensor_fitting import Fit
@@ -124,7 +124,7 @@ def pictured(place: str, assumed: Path, motions: list[Motion], path: Path) -> No
     moments = times[[first, (first + len(times) - 1) // 2, len(times) - 1]]
     shown = stage(capture)
     if whole_body(place):
-        shown = without_sensors(with_mannequin(shown, fit_body(place, capture)))
+        shown = bodies_alone(with_mannequin(shown, fit_body(place, capture)))
     rows = [(shown, moments + read_completion(assumed).from_s)]
     sheet([*rows, *((staged(motion), moments) for motion in motions)], path)
 
