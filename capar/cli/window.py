@@ -64,6 +64,7 @@ def open_(
         of_captures = [find_place(each)[0].parent for each in captures]
         folders = Folders([*named, *of_captures, *map(Path, known)])
         settings = Settings(profile, rules, known[0] if known else None, dark)
+        settings.rule_base()  # what is wrong with a rule is said before anything is shown
         window = open_window(folders, settings, captures, port=port)
         typer.echo(f"the window is at {window.address}\nCtrl-C ends it", err=True)
         if browser:
