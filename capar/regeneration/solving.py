@@ -29,7 +29,7 @@ FREE_HEAD = 0.002  # Share of that weight otherwise [1].
 FOOT_COST = 240.0
 BALANCE_COST = 20.0  # Weight of a metre of the centre of mass from above the feet.
 
-DAMPING_COST = 0.6  # Weight of a radian from one iteration to the next: limbs do not swing freely.
+DAMPING_COST = 0.1  # Weight of a radian from one iteration to the next.
 EASE_COST, GUIDE_COST = 0.15, 1.0
 """Weights of a radian from standing at ease, and at least so from a posture that guides."""
 
