@@ -121,7 +121,6 @@ def quality(motion: Motion) -> Quality:
     """Verify a motion at every frame."""
     plan, hands = motion.plan, performed_hands(motion)
     contacts, told = _contact_gates(motion)
-    finger_gates, short = _finger_gates(motion)
     feet = plan.human.sites(motion.postures, ["right_foot", "left_foot"])
     slid = (worst_of(_gone(spots), name) for name, (spots, _) in feet.items())
     gates = (
@@ -129,7 +128,6 @@ def quality(motion: Motion) -> Quality:
         *_guide_gates(plan, hands),
         *_throw_gates(plan, hands),
         *contacts,
-        *finger_gates,
         within("feet", max(slid, key=lambda worst: worst[0]), 3.0),
         *joint_gates(plan.human, motion.postures, plan.source.rate_hz),
         _still_gate(plan),
@@ -137,7 +135,7 @@ def quality(motion: Motion) -> Quality:
         *_borne_gates(plan),
         *_together_gates(plan, hands),
     )
-    return Quality(gates, (*told, *short))
+    return Quality(gates, (*told, *_fingers(motion)))
 
 
 def _gone(spots: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
@@ -282,15 +280,14 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], tuple[Measure, ...]]:
     return gates, tuple(told)
 
 
-def _finger_gates(motion: Motion) -> tuple[list[Gate], list[Measure]]:
-    """Fingers that close on what a hand holds touch it, and none is deeper inside anything.
+def _fingers(motion: Motion) -> list[Measure]:
+    """How deep a bone of the five fingers is in anything, how far they are off what they hold [mm].
 
-    Of the body with five fingers on each hand. Fingers that do not reach what the hand holds stay
-    open, and are reported. None where nothing is held.
+    Fingers that do not reach what the hand holds stay open. No measures where nothing is held.
     """
     grasps, plan = [grasp for own in motion.grasps.values() for grasp in own], motion.plan
     if not grasps:
-        return [], []
+        return []
     human, postures = motion.fingered
     around, inside, off = Surroundings(human, plan.scene), [NONE], [NONE]
     things = {name: vectors(path) for name, path in plan.things.items()}
@@ -311,9 +308,16 @@ def _finger_gates(motion: Motion) -> tuple[list[Gate], list[Measure]]:
         for which in ("reaching", "short")
     )
     unit, away = f"of {len(reaching + short)}", ", ".join(sorted(set(short)))
-    told = [Measure("fingers that close", float(len(reaching)), unit, -1, away and f"not {away}")]
-    gates = [within("fingers inside", max(inside), 2.0), within("fingers off", max(off), 2.0)]
-    return gates, told
+    return [
+        Measure("fingers that close", float(len(reaching)), unit, -1, away and f"not {away}"),
+        *(
+            Measure(name, 1e3 * value_m, "mm", frame, bodies)
+            for name, (value_m, frame, bodies) in (
+                ("fingers inside", max(inside)),
+                ("fingers off", max(off)),
+            )
+        ),
+    ]
 
 
 def is_hand(part: str) -> bool:

@@ -46,10 +46,9 @@ def test_the_same_action_comes_out_of_a_good_motion(action: str, agent: str, num
     assert trip.same_contacts
 
 
-IN_THE_MUG = pytest.mark.xfail(reason="a ring finger is 2.8 mm inside the mug", strict=True)
 NOISY = (
     ("drink", "child", 0), ("sip", "woman", 1), ("touch", "child", 3), ("pick_up", "man", 0),
-    pytest.param("pour", "child", 2, marks=IN_THE_MUG),
+    ("pour", "child", 2),
 )  # fmt: skip
 
 
