@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from shell import DEMO
+from bundles import DRINKING as DEMO
 from window_client import Client
 
 from capar.model.observation import SegmentAddress
