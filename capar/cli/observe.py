@@ -115,7 +115,7 @@ def observe(
     r"""Say what was done in a capture: named segments and their PAR.
 
     Segments are those of each hand, foot or head; the complex PAR is what they make together.
-    Of many captures each has a line; failures are told at the end with their commands. With
+    Of many captures each has a line; failures are listed at the end with their commands. With
     --actionary what is kept is not observed again, so that a run that was ended goes on.
 
     \b
@@ -211,7 +211,7 @@ def _means_many(place: str) -> bool:
     path = Path(place)
     if path.is_dir():
         return not (path / "capture.toml").is_file() and any(path.rglob("capture.toml"))
-    return not path.exists() and any(each in place for each in "*?[")
+    return not path.exists() and any(mark in place for mark in "*?[")
 
 
 def _observe_many(

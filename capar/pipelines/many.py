@@ -54,7 +54,7 @@ def observe_many(
     actionary: str | Path | None = None,
     wait_s: float = 0.0,
 ) -> Iterator[Outcome]:
-    """Observe captures, in their order; what fails is told, and does not end the others.
+    """Observe captures, in their order; failures are reported, and do not end the others.
 
     With an Actionary each is kept when it is yielded, by this process alone, and one that is there
     from the same files, by the same rules and version, is not observed again: what was killed goes

@@ -486,10 +486,7 @@ def _contacts(observation: Observation) -> Iterator[Row]:
                 "capture": observation.capture,
                 "body": fact.body,
                 "other": fact.other,
-                "start_s": fact.first / observation.rate_hz,
-                "end_s": fact.last / observation.rate_hz,
-                "first": fact.first,
-                "last": fact.last,
+                **_interval(fact, observation.rate_hz),
             }
 
 
@@ -501,10 +498,7 @@ def _motions(observation: Observation) -> Iterator[Row]:
                 "object": fact.object,
                 "mover": fact.mover,
                 "how": fact.how,
-                "start_s": fact.first / observation.rate_hz,
-                "end_s": fact.last / observation.rate_hz,
-                "first": fact.first,
-                "last": fact.last,
+                **_interval(fact, observation.rate_hz),
             }
 
 
@@ -538,3 +532,12 @@ FRAMES: Mapping[str, tuple[tuple[str, ...], Callable[[Observation], Iterator[Row
     "facts": (("capture", "predicate", "arguments", "atom"), _facts),
 }  # fmt: skip
 """Columns and rows of each frame; times [s] take frames as evenly spaced."""
+
+
+def _interval(fact: Touching | MovedBy, rate_hz: float) -> Row:
+    return {
+        "start_s": fact.first / rate_hz,
+        "end_s": fact.last / rate_hz,
+        "first": fact.first,
+        "last": fact.last,
+    }

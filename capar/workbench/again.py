@@ -107,7 +107,7 @@ class Again(Panel):
         )
 
     def perform(self) -> str:
-        """Perform it beside the window, and show it next to the original."""
+        """Perform it in the background, and show it next to the original."""
         window = self.window
         opened, _ = window.need()
         if opened.trial.others:

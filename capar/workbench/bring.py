@@ -132,7 +132,7 @@ class Bring(Panel):
         return f"{plain} is there: {len(content)} bytes"
 
     def draft(self, name: str) -> str:
-        """Draft the capture.toml of a motion file, beside the window, and show it."""
+        """Draft the capture.toml of a motion file, in the background, and show it."""
         if name == NONE:
             raise CaparError("there is no motion file in the folders; upload one")
         path = self.window.folders.inside(name)

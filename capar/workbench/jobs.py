@@ -1,4 +1,4 @@
-"""Long work beside the window: one job at a time, with its progress and a way to end it."""
+"""Long work in the background: one job at a time, with its progress and a way to end it."""
 
 import ctypes
 import sys

@@ -251,7 +251,7 @@ class Know(Panel):
     # Report
 
     def report(self) -> str:
-        """Make the linguistic report over rules and knowledge, beside the window."""
+        """Make the linguistic report over rules and knowledge, in the background."""
         window = self.window
 
         def work(report: Callable[[str, float], None]) -> str:

@@ -18,7 +18,7 @@ SHORT_S = 4.0
 def open_window(
     folders: Folders, settings: Settings, captures: Sequence[str] = (), *, port: int = 0
 ) -> Window:
-    """The window with some captures in it, which are observed beside it.
+    """The window with some captures in it, which are observed in the background.
 
     Raises:
         CaparError: A capture cannot be read.

@@ -317,7 +317,7 @@ class Rules(Panel):
         return ""
 
     def audit(self) -> str:
-        """Audit the rule base over every possible segment, beside the window."""
+        """Audit the rule base over every possible segment, in the background."""
         base = self.window.settings.rule_base()
 
         def work(report: Callable[[str, float], None]) -> Any:

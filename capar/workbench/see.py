@@ -124,7 +124,7 @@ class See(Panel):
         self.window.drop(self.window.active)
 
     def fit(self) -> str:
-        """Fit a human body to the sensors, beside the window."""
+        """Fit a human body to the sensors, in the background."""
         window, opened = self.window, self.window.active
         if opened is None or not opened.place:
             raise CaparError("a body is fitted to a capture in a folder; open one")

@@ -242,7 +242,7 @@ class Window:
         return max((float(each.trial.times[-1]) for each in self.captures), default=0.0)
 
     def observe(self) -> None:
-        """Observe every open capture that is not yet, beside the window."""
+        """Observe every open capture that is not yet, in the background."""
         waiting = [each for each in self.captures if each.seen is None]
         if not waiting or self.jobs.running:
             return
@@ -448,7 +448,7 @@ class Window:
         work: Callable[[Callable[[str, float], None]], Any],
         done: Callable[[Any], None],
     ) -> None:
-        """Do something long beside the window; what goes wrong is shown at a place.
+        """Do something long in the background; what goes wrong is shown at a place.
 
         Raises:
             CaparError: Something else is still being done.
