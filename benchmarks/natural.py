@@ -30,9 +30,10 @@ from capar.body.sensor_fitting import Fit
 from capar.pipelines.round_trips import body, observed_source
 from capar.regeneration.captures import capture_of
 from capar.regeneration.motion import Motion
+from capar.regeneration.scenes import Scene
 from capar.regeneration.search import regenerate
-from capar.views.viewer.snapshot import snapshot
-from capar.views.viewer.stage import Stage, body_parts, is_ground, stage
+from capar.views.viewer.snapshot import EYE, snapshot
+from capar.views.viewer.stage import Stage, StagedBody, body_parts, is_ground, stage
 from extractors.readers.bundle.capture_toml import read_capture
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -192,18 +193,53 @@ WIDE, TALL, COLOURS, TITLE = 300, 320, 48, 0.07
 """Width and height of one moment, how many colours a sheet has, and the share of the height of a
 picture that its title has [1]."""
 
+ABREAST_M = 0.25  # Between performers who are drawn beside each other [m].
 
-def sheet(rows: Sequence[tuple[Stage, Sequence[float]]], path: Path) -> None:
+
+def abreast(shown: Sequence[tuple[Stage, float, Scene]]) -> Stage:
+    """Performers beside each other at their times [s], to one scale and facing the same way."""
+    bodies, edge_m = list[StagedBody](), 0.0
+    across = np.cross([0.0, 0.0, 1.0], EYE) / np.hypot(*EYE[:2])
+    for own, time_s, where in shown:
+        frame, turn = own.nearest(time_s), Rotation.from_euler("z", -where.heading)
+        origin, placed = np.array([*where.place, where.floor_m]), list[StagedBody]()
+        for one in (one for one in own.bodies if not np.isnan(one.positions[frame, 0])):
+            turned = turn * Rotation.from_quat(one.orientations[[frame]], scalar_first=True)
+            spots = turn.apply(one.positions[[frame]] - origin)
+            ways = turned.as_quat(scalar_first=True)
+            placed.append(replace(one, positions=spots, orientations=ways))
+        corners = np.concatenate([_corners(one) @ across for one in placed])
+        by = (edge_m - corners.min()) * across
+        bodies += [replace(one, positions=one.positions + by) for one in placed]
+        edge_m += float(np.ptp(corners)) + ABREAST_M
+    return Stage("", np.zeros(1), tuple(bodies))
+
+
+def _corners(one: StagedBody) -> np.ndarray:
+    """Corners of a body's surface in the world at the first frame [m]."""
+    if one.shape is None:
+        return one.positions[:1]
+    turn = Rotation.from_quat(one.orientations[0], scalar_first=True)
+    return np.asarray(turn.apply(np.array(one.shape.vertices)) + one.positions[0])
+
+
+def sheet(
+    rows: Sequence[tuple[Stage, Sequence[float]]],
+    path: Path,
+    *,
+    cell: tuple[int, int] = (WIDE, TALL),
+) -> None:
     """Moments of several performers in a picture: a row each, from left to right in time [s]."""
     most = max(len(moments) for _, moments in rows)
-    page = Image.new("RGB", (WIDE * most, TALL * len(rows)), "white")
+    wide, tall = cell
+    page = Image.new("RGB", (wide * most, tall * len(rows)), "white")
     for down, (shown, moments) in enumerate(rows):
         drawn = [_drawn(shown, float(time_s)) for time_s in moments]
         boxes = np.array([ImageChops.invert(one).getbbox() for one in drawn])
         box = (*boxes[:, :2].min(axis=0), *boxes[:, 2:].max(axis=0))
         for across, one in enumerate(drawn):
-            small = ImageOps.contain(one.crop(box), (WIDE - 12, TALL - 12))
-            corner = np.array([across, down]) * (WIDE, TALL) + 6
+            small = ImageOps.contain(one.crop(box), (wide - 12, tall - 12))
+            corner = np.array([across, down]) * cell + 6
             page.paste(small, tuple(int(each) for each in corner))
     page.quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
 

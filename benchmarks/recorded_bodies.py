@@ -12,11 +12,12 @@ import os
 import tempfile
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import scene
-from natural import bodies_alone, sheet, staged
+from natural import abreast, bodies_alone, sheet, staged
 
 from capar.body.body_fitting import fit_body, ground, whole_body
 from capar.body.sensor_fitting import Fit
@@ -26,6 +27,7 @@ from capar.regeneration.captures import read_completion
 from capar.regeneration.motion import Motion
 from capar.regeneration.quality import failures
 from capar.regeneration.scenes import read_scene
+from capar.regeneration.sources import MOVES_M
 from capar.views.viewer.stage import stage, with_mannequin
 from extractors.readers.bundle.capture_toml import read_capture
 from extractors.readers.drafting.draft import draft
@@ -41,6 +43,7 @@ FILES = ("cmu_walk.bvh", "std_walking2_markers.trc", "walk_free_01.trc", "sgi_in
          "test3.bvh", "racing.c3d", "propulsion.c3d")  # fmt: skip
 
 AGENTS = ("woman", "child")
+CELL = (840, 420)  # Width and height of a moment in a picture.
 
 FAR_MM = 30.0
 """Distances larger than this are counted, as ``capar fit`` reports them [mm]."""
@@ -117,16 +120,29 @@ def performed(place: str, assumed: Path, agent: str) -> tuple[str, Motion | None
 
 
 def pictured(place: str, assumed: Path, motions: list[Motion], path: Path) -> None:
-    """Draw a recording and what was made of it, when a hand takes hold, between, and at the end."""
+    """Draw a recording, and beside it what bodies made of it.
+
+    Where a hand takes hold, and where what it holds is farthest from where it was.
+    """
     source = motions[0].plan.source
-    capture, times = read_capture(place), source.times
-    first = min((hold.first for hold in source.holds), default=0)
-    moments = times[[first, (first + len(times) - 1) // 2, len(times) - 1]]
-    shown = stage(capture)
     if whole_body(place):
-        shown = bodies_alone(with_mannequin(shown, fit_body(place, capture)))
-    rows = [(shown, moments + read_completion(assumed).from_s)]
-    sheet([*rows, *((staged(motion), moments) for motion in motions)], path)
+        capture, from_s = read_capture(place), read_completion(assumed).from_s
+        shown = bodies_alone(with_mannequin(stage(capture), fit_body(place, capture)))
+    else:
+        shown, from_s = stage(source.capture), 0.0
+    shown = replace(shown, times=shown.times - from_s)
+    first = min(hold.first for hold in source.holds)
+    gone = [np.linalg.norm(p.translation - p.translation[0], axis=1) for p in source.paths.values()]
+    far = np.max(gone, axis=0)
+    there = (
+        source.times[[first, int(far.argmax())]] if far.max() > MOVES_M else source.times[[first]]
+    )
+    made = [(staged(motion), motion.plan.scene) for motion in motions]
+    rows = [
+        abreast([(each, float(time_s), scene) for each, scene in [(shown, source.scene), *made]])
+        for time_s in there
+    ]
+    sheet([(row, [0.0]) for row in rows], path, cell=CELL)
 
 
 def main() -> None:

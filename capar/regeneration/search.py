@@ -14,6 +14,7 @@ motion  as planned                                        nearly all
         wider margins of free hands                       a mug cut in passing
         hands led more firmly besides                     a hand that arrives late
         drawn to the key postures of the grips            an elbow that bent the other way
+        with grips that are missed by less                a forearm that meets a box as it leaves
 refuse  remedies: nearer, higher, lower, smaller, taller  what is out of reach
 ======  ================================================  ======================================
 
@@ -56,6 +57,9 @@ CARES = (Care(), WIDER, replace(WIDER, firm_s=1.0, weight=2.0))
 
 BY_CARE = {"penetration", "free hand clear", "event position", "event rotation", "on the way"}
 """The gates that more care may mend: a hand that is led firmly for longer arrives in time."""
+
+EASY = 0.5
+"""As large a share of what is allowed a grip may be missed by where the motion of others fails."""
 
 MOST_TURNS, FEW_TURNS = 24, 6
 """Turns of a grip that are tried; where another place or a remedy is sought [1]."""
@@ -106,8 +110,11 @@ def best_motion(draft: Draft) -> tuple[Motion, Quality]:
     """The motion of a draft with grips that fails fewest gates."""
     tried: list[tuple[Motion, Quality]] = []
     most = max(MOST_FRAMES // len(draft.source.times), 1)
-    for guided in (False, True) if draft.grips else (False,):
+    ways = ((False, False), (True, False), (False, True)) if draft.grips else ((False, False),)
+    for guided, easy in ways:
         if len(tried) == most or (tried and min(tried, key=_failures)[1].passed):
+            break
+        if easy and not eased(draft):
             break
         guide = guide_of(draft) if guided else None
         for care in CARES[: most - len(tried)]:
@@ -193,16 +200,24 @@ def _postures(draft: Draft | None) -> int:
     return ATTEMPT + (draft.postures if draft else 0)
 
 
-def choose_grips(draft: Draft, most: int = MOST_TURNS) -> str:
+def eased(draft: Draft) -> bool:
+    """Choose grips that are missed by less; whether there are others."""
+    before = [grip.turn for grip in draft.grips]
+    missed = choose_grips(draft, ratio=EASY)
+    return not missed and before != [grip.turn for grip in draft.grips]
+
+
+def choose_grips(draft: Draft, most: int = MOST_TURNS, ratio: float = 1.0) -> str:
     """Choose a grip for every hold; returns what is missed, empty if nothing.
 
-    The first that reaches of so many turns of the recorded grip; if all of them are tried, and
-    the forearm is inside the object, then of those drawn back along the fingers.
+    The first of so many turns of the recorded grip that is missed by no more than a share of what
+    is allowed, else the one that is missed least; if all of them are tried, and the forearm is
+    inside the object, then of those drawn back along the fingers.
     """
     chosen: list[Grip] = []
     for group in _groups(led_holds(draft.source.holds, draft.source.co_held)):
         options = turns(draft.scene.thing(group[0].thing))[:most]
-        miss, grips = _best_grips(draft, chosen, group, options)
+        miss, grips = _best_grips(draft, chosen, group, options, ratio)
         if miss.ratio > 1.0 and miss.cuts and most == MOST_TURNS:
             drawn = _best_grips(draft, chosen, group, drawn_turns())
             miss, grips = min((miss, grips), drawn, key=lambda tried: tried[0].ratio)
@@ -214,15 +229,15 @@ def choose_grips(draft: Draft, most: int = MOST_TURNS) -> str:
 
 
 def _best_grips(
-    draft: Draft, chosen: list[Grip], group: list[Hold], options: list[Turn]
+    draft: Draft, chosen: list[Grip], group: list[Hold], options: list[Turn], ratio: float = 1.0
 ) -> tuple[Miss, list[Grip]]:
-    """The first of some turns that reaches, or else the one that misses least."""
+    """The first of some turns that is missed by so little, or else the one that misses least."""
     tried: list[tuple[Miss, list[Grip]]] = []
     for turn in options:
         grips = draft.gripping.grips(group, turn)
-        enough = max(min((miss.ratio for miss, _ in tried), default=np.inf), 1.0)
+        enough = max(min((miss.ratio for miss, _ in tried), default=np.inf), ratio)
         tried.append((draft.missed(chosen + grips, group, enough), grips))
-        if tried[-1][0].ratio <= 1.0 or draft.postures > MOST_POSTURES:
+        if tried[-1][0].ratio <= ratio or draft.postures > MOST_POSTURES:
             break
     return min(tried, key=lambda each: each[0].ratio)
 

@@ -16,6 +16,8 @@ from capar.pipelines.round_trips import body, observed_source, round_trips
 from capar.regeneration import Motion, PlanError, Quality, regenerate, search
 from capar.regeneration.body_frames import body_frames
 from capar.regeneration.direct_mapping import departures
+from capar.regeneration.grips import Grip, Turn
+from capar.regeneration.planning import Draft, Miss
 from capar.regeneration.quality import Gate, quality
 from capar.regeneration.scenes import moved, raised
 from capar.regeneration.search import reachable
@@ -190,6 +192,27 @@ def test_a_motion_that_fails_a_gate_is_written_and_the_exit_code_says_so(
     assert "penetration" in capsys.readouterr().out
     assert (output / "capture.toml").exists()
     assert len(tried) == 1  # more frames than are tried in all
+
+
+def test_where_the_motion_of_a_grip_fails_one_that_is_missed_by_less_is_tried(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    source = recorded("touch")
+
+    def missed(_: Draft, grips: list[Grip], *_others: object) -> Miss:
+        return Miss(0.9 - 4.0 * abs(grips[-1].turn.pitch))
+
+    def judged(motion: Motion) -> Quality:
+        return FAILED if motion.plan.grips[0].turn == Turn() else Quality(())
+
+    monkeypatch.setattr(search, "CARES", search.CARES[:1])
+    monkeypatch.setattr(search, "quality", judged)
+    monkeypatch.setattr(Draft, "missed", missed)
+    draft = search.reachable(source, source.scene, source.human)
+    assert [grip.turn for grip in draft.grips] == [Turn()]
+    motion, found = search.best_motion(draft)
+    assert found.passed
+    assert [abs(grip.turn.pitch) for grip in motion.plan.grips] == [0.15]
 
 
 def test_a_capture_without_a_head_is_refused() -> None:
