@@ -26,9 +26,10 @@ def write_subtasks(
     """Copy a data set with the segments of captures as subtasks; how many each episode has.
 
     The number that ends a capture's name is its episode: ``robot:episode_000003``. A subtask
-    begins at the first frame that is not before its segment; equal ones in a row are one. It reads
-    as the segment's label, or as its name and objects where no vocabulary gave it another. Other
-    rows of the column stay, and so do episodes without a capture.
+    begins at the first frame that is not before its segment; equal ones in a row are one, and of
+    several that begin with one frame only the last is written, since LeRobot refuses two at once.
+    It reads as the segment's label, or as its name and objects where no vocabulary gave it another.
+    Other rows of the column stay, and so do episodes without a capture.
 
     Args:
         rows: Labels of captures, as ``label`` gives them, not by frame.
@@ -61,9 +62,10 @@ def write_subtasks(
     info["features"] |= {PERSISTENT: FEATURE, EVENTS: FEATURE}
     text = json.dumps(info, indent=4, ensure_ascii=False)
     (output / INFO).write_text(text + "\n", encoding="utf-8")
+    counts: dict[int, int] = {}
     for path in files:
-        _rewrite(parquet, output / path.relative_to(dataset), subtasks)
-    return {number: len(own) for number, own in sorted(subtasks.items())}
+        counts |= _rewrite(parquet, output / path.relative_to(dataset), subtasks)
+    return dict(sorted(counts.items()))
 
 
 def _subtasks(rows: Iterable[Row], effector: str) -> dict[int, list[tuple[float, str]]]:
@@ -109,8 +111,10 @@ def _words(segment: Row) -> str:
     return " ".join([name, *(each.replace("_", " ") for each in segment["objects"])])
 
 
-def _rewrite(parquet: Any, path: Path, subtasks: Mapping[int, list[tuple[float, str]]]) -> None:
-    """Put the columns into a file of a data set, a row group an episode."""
+def _rewrite(
+    parquet: Any, path: Path, subtasks: Mapping[int, list[tuple[float, str]]]
+) -> dict[int, int]:
+    """Put the columns into a file, a row group an episode; how many subtasks each has."""
     pa = arrow()
     calls = pa.list_(pa.string())
     event = [("role", pa.string()), ("content", pa.string()), ("style", pa.string()),
@@ -124,16 +128,19 @@ def _rewrite(parquet: Any, path: Path, subtasks: Mapping[int, list[tuple[float, 
     times = table["timestamp"].to_pylist()
     before = table[PERSISTENT].to_pylist() if PERSISTENT in table.column_names else []
     rows: dict[int, list[dict[str, Any]]] = {}
+    counts: dict[int, int] = {}
     for n, number in enumerate(numbers):
         if number not in rows:
             stamps = [time for time, own in zip(times, numbers, strict=True) if own == number]
             kept = [each for each in (before[n] if before else None) or []
                     if number not in subtasks or each["style"] != STYLE]  # fmt: skip
+            texts = {_stamp(start_s, stamps): text for start_s, text in subtasks.get(number, [])}
             added = [
                 {"role": "assistant", "content": text, "style": STYLE, "camera": None,
-                 "tool_calls": None, "timestamp": _stamp(start_s, stamps)}
-                for start_s, text in subtasks.get(number, [])
+                 "tool_calls": None, "timestamp": stamp}
+                for stamp, text in texts.items() if stamp is not None
             ]  # fmt: skip
+            counts |= {number: len(added)} if number in subtasks else {}
             rows[number] = sorted([*kept, *added], key=lambda e: (e["timestamp"], e["style"] or ""))
     column = pa.array([rows[number] for number in numbers], kinds[PERSISTENT])
     events = pa.array([[]] * len(numbers), kinds[EVENTS])
@@ -147,9 +154,10 @@ def _rewrite(parquet: Any, path: Path, subtasks: Mapping[int, list[tuple[float, 
         starts = [n for n in range(len(numbers)) if n == 0 or numbers[n] != numbers[n - 1]]
         for start, end in zip(starts, [*starts[1:], len(numbers)], strict=True):
             writer.write_table(table.slice(start, end - start), row_group_size=end - start)
+    return counts
 
 
-def _stamp(start_s: float, stamps: list[float]) -> float:
-    """The first timestamp of an episode that is not before a time from its beginning on."""
+def _stamp(start_s: float, stamps: list[float]) -> float | None:
+    """The first timestamp of an episode not before a time since its beginning, if there is one."""
     since = stamps[0] + start_s - 1e-4  # as timestamps are of single precision
-    return next((each for each in stamps if each >= since), stamps[-1])
+    return next((each for each in stamps if each >= since), None)

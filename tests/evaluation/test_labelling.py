@@ -2,6 +2,9 @@
 
 import csv
 import json
+import os
+import re
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -243,3 +246,47 @@ def test_the_command_writes_labels_and_refuses_what_does_not_fit(tmp_path: Path)
         ([tmp_path / "none", "-o", out], "no capture here"),
     ):
         assert wrong in refused("label", *arguments)
+
+
+def test_no_two_subtasks_begin_with_one_frame_nor_after_the_last(demo: Any, tmp_path: Path) -> None:
+    """LeRobot refuses an episode in which two subtasks are active at once."""
+    source = robot_data(tmp_path / "robot")
+    rows = [row | {"capture": "episode_0"} for row in label([demo]) if row["row"] == "segment"]
+    near = [rows[0] | {"start_s": 0.0}, rows[1] | {"start_s": 0.101}, rows[2] | {"start_s": 0.11}]
+    late = rows[3] | {"start_s": 20 / 30}  # its last frame is at 19 / 30
+    assert write_subtasks([*near, late], source, tmp_path / "labelled") == {0: 2}
+    table = pq.read_table(tmp_path / "labelled" / "data" / "chunk-000" / "file-000.parquet")
+    found = table["language_persistent"].to_pylist()[0]
+    assert [each["timestamp"] for each in found] == pytest.approx([0.0, 4 / 30])
+    assert found[1]["content"].startswith("move obj to")
+
+
+@pytest.mark.skipif(
+    "CAPAR_LEROBOT" not in os.environ,
+    reason="CAPAR_LEROBOT names the Python of an environment with the package lerobot 0.6 or newer",
+)
+@pytest.mark.parametrize("frames", [170, 60])
+def test_lerobot_reads_the_subtask_of_each_frame(frames: int, demo: Any, tmp_path: Path) -> None:
+    def lerobot(*arguments: object) -> str:
+        script = Path(__file__).parents[1] / "lerobot_data.py"
+        command = [os.environ["CAPAR_LEROBOT"], script, *arguments]
+        environment = os.environ | {"HF_HUB_OFFLINE": "1"}
+        done = subprocess.run(
+            list(map(str, command)), env=environment, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    lerobot("write", tmp_path / "data", 20, frames)
+    rows = [row | {"capture": "robot:episode_1"} for row in label([demo])]
+    write_subtasks(rows, tmp_path / "data", tmp_path / "labelled")
+    read = json.loads(lerobot("read", tmp_path / "labelled"))
+    assert [(each["episode"], each["state"][0]) for each in read] == [
+        *((0, n) for n in range(20)), *((1, n) for n in range(frames))
+    ]  # fmt: skip
+    assert not any(each["subtask"] or each["rows"] or each["events"] for each in read[:20])
+    for frame in read[20:]:
+        begun = [e for e in segments_in_json(demo) if e["start_s"] <= frame["time_s"] + 1e-4]
+        words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", begun[-1]["name"]).lower()
+        assert frame["subtask"] == " ".join([words, *begun[-1]["objects"]])
+        assert 0.0 <= frame["since_s"] - begun[-1]["start_s"] + 1e-4 < 1 / 30 + 2e-4
