@@ -1,4 +1,4 @@
-"""Language: describe a capture, read sentences, look verbs up, report on them."""
+"""Language: describe a capture, read sentences, look verbs up, report on them and on corpora."""
 
 from dataclasses import replace
 from enum import StrEnum
@@ -9,7 +9,7 @@ import typer
 from typer import Argument, Option
 
 from capar.cli import options
-from capar.cli.output import answer, check_writable, emit
+from capar.cli.output import answer, check_picture, check_writable, emit, save
 from capar.model.errors import CaparError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -303,3 +303,32 @@ def linguistics(
     with options.open_words(actionary, corrected=corrected) as store:
         report = report_of(files, store=store, cases=cases_of(files, cases))
     emit(write(report, Format.JSON.value if json else form.value), output)
+
+
+@report.command()
+def corpus(
+    actionary: options.Place = None,
+    plot: options.Plot = None,
+    corrected: options.Corrected = False,
+    json: options.Json = False,
+) -> None:
+    """Report how often, how long and by whom actions were done, what follows what, and outliers.
+
+    The same as `capar query` of statistics, sequences and outliers, which take filters.
+    """
+    from kb.queries.questions import as_table, question
+
+    check_picture(plot)
+    options.require_actionary(actionary, observed=True)
+    with options.open_words(options.opened(actionary), corrected=corrected) as store:
+        assert store is not None
+        asked = {each: question(each) for each in ("statistics", "sequences", "outliers")}
+        found = {name: store.ask(each.bind({})) for name, each in asked.items()}
+    rows = {name: list(each.plain()) for name, each in found.items()}
+    if plot:
+        from capar.views.corpus import draw_corpus
+
+        title = f"What was done in {options.opened(actionary)}"
+        save(plot, lambda path: draw_corpus(title, rows, path), "drew")
+    lines = (f"{asked[name].text}\n{as_table(each)}" for name, each in found.items())
+    answer(rows, lines, json=json)

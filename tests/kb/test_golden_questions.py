@@ -5,7 +5,9 @@ They are observed by the thesis's rules, and by the default ones as ``capar obse
 
 from collections import Counter
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
+from statistics import mean, stdev
 from typing import Any
 
 import motions
@@ -27,7 +29,7 @@ FIRST = next(iter(motions.PERFORMERS))
 ASKED_HERE = {
     "touching", "goal", "before", "follows", "grasped", "hand", "performers", "shared",
     "unknown", "unexplained", "instruments", "world", "allen", "observations", "actions",
-    "notices", "looked_at", "where", "both_hands",
+    "notices", "looked_at", "where", "both_hands", "statistics", "sequences", "outliers",
 }  # fmt: skip
 
 ASKED_OF_RECORDINGS = {
@@ -230,6 +232,56 @@ def test_nothing_is_stored_twice_or_wrong(folder: Path) -> None:
         added = again.add(observe(ACTIONS["TouchCycle"](FIRST).capture, name=part.action))
         assert added.replaced
         assert held(again) == before
+
+
+def test_statistics_of_many_captures_are_those_of_a_plain_computation(
+    known: Actionary, five_by_three: tuple[Observation, ...]
+) -> None:
+    every = (*five_by_three, with_unknown())
+    called = {"agent": "agent of Strange"}  # who has no name is called by the capture's
+    segments = [
+        (
+            called.get(who := seen.performer(link.ee), who),
+            each.name if each.known else "Unknown",
+            each.end_s - each.start_s,
+        )
+        for seen in every
+        for link in seen.links
+        for each in link.segments
+    ]
+    rows = known.ask("statistics")
+    assert {(r["performer"], r["action"]): r["times"] for r in rows} == Counter(
+        (who, name) for who, name, _ in segments
+    )
+    for row in rows:
+        own = [s for who, name, s in segments if (who, name) == (row["performer"], row["action"])]
+        figures = (min(own), sum(own) / len(own), max(own), sum(own))
+        found = (row["shortest"], row["mean"], row["longest"], row["total"])
+        assert found == pytest.approx(figures, abs=1e-6)
+    pairs = Counter(
+        tuple(each.name if each.known else "Unknown" for each in pair)
+        for seen in every
+        for link in seen.links
+        for pair in pairwise(link.segments)
+    )
+    firsts = Counter(first for first, _ in pairs.elements())
+    for row in (found := known.ask("sequences")):
+        assert row["share"] == pytest.approx(row["times"] / firsts[row["action"]])
+    assert {(row["action"], row["next"]): row["times"] for row in found} == pairs
+    expected = set()
+    for deviations in (1.0, 2.0):
+        expected = {
+            (name, round(s, 6))
+            for index, (_, name, s) in enumerate(segments)
+            if name != "Unknown"
+            if len(o := [b for n, (_, a, b) in enumerate(segments) if a == name and n != index]) > 2
+            if abs(s - mean(o)) > deviations * stdev(o)
+        }
+        outliers = known.ask("outliers", deviations=deviations)
+        assert {
+            (row["action"], round(float(str(row["seconds"])), 6)) for row in outliers
+        } == expected
+    assert expected
 
 
 def test_where_bodies_are_and_go(
