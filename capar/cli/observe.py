@@ -2,14 +2,14 @@
 
 import json as codec
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import replace
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 from typer import Argument, Option
@@ -80,6 +80,10 @@ def observe(
     jobs: Annotated[
         int, Option(min=1, metavar="N", help="Of many captures: how many processes observe.")
     ] = 1,
+    scheduler: Annotated[
+        str,
+        Option(metavar="ADDRESS", help="Of many captures: a dask cluster that observes them."),
+    ] = "",
     quiet: Annotated[
         bool, Option("--quiet", help="Print no notes and no progress; of many, failures alone.")
     ] = False,
@@ -135,14 +139,15 @@ def observe(
     if actionary:
         options.confirm_new(actionary, new=new)
     rule_base = partial(options.rule_base, profile, rules, actionary, steady=steady)
-    if len(given) > 1 or (given and _means_many(capture)):
+    if len(given) > 1 or (given and (scheduler or _means_many(capture))):
         single = {
             "--script": script, "--pars": pars, "--plot": plot, "--set": set_, "--fit": fit,
             "--on-unknown": on_unknown, "--name": name, "--live": live, "--device": device,
         }  # fmt: skip
         if refused := [option for option, value in single.items() if value]:
             raise CaparError(f"of many captures there is no {' and no '.join(refused)}")
-        _observe_many(given, rule_base(), actionary, jobs=jobs, wait_s=wait, json=json, quiet=quiet)
+        by = {"jobs": jobs, "scheduler": scheduler, "actionary": actionary, "wait_s": wait}
+        _observe_many(given, by | {"rules": rule_base()}, json=json, quiet=quiet)
         return
     if live or device:
         if plot or set_ or on_unknown or fit:
@@ -214,17 +219,14 @@ def _means_many(place: str) -> bool:
     return not path.exists() and any(mark in place for mark in "*?[")
 
 
-def _observe_many(
-    patterns: list[str],
-    rules: "Profile",
-    actionary: str | None,
-    *,
-    jobs: int,
-    wait_s: float,
-    json: bool,
-    quiet: bool,
-) -> None:
+def _observe_many(patterns: list[str], by: Mapping[str, Any], *, json: bool, quiet: bool) -> None:
     """Print a line for each capture, and at the end what failed.
+
+    Args:
+        patterns: What captures are meant.
+        by: By what they are observed, as ``observe_many`` takes it.
+        json: Whether a line is JSON.
+        quiet: Whether only failures are printed.
 
     Raises:
         CaparError: Some failed.
@@ -234,8 +236,7 @@ def _observe_many(
 
     places = find_captures(patterns)
     failed = []
-    outcomes = observe_many(places, jobs=jobs, rules=rules, actionary=actionary, wait_s=wait_s)
-    for number, done in enumerate(outcomes, 1):
+    for number, done in enumerate(observe_many(places, **by), 1):
         seen = done.observation
         segments = seen.segments if seen else ()
         unknown = sum(not each.known for each in segments)
@@ -257,7 +258,7 @@ def _observe_many(
         elif not quiet:
             typer.echo(f"{number}/{len(places)}  {done.place}: {told}")
     if failed:
-        where = f" --actionary {actionary}" if actionary else ""
+        where = f" --actionary {by['actionary']}" if by["actionary"] else ""
         lines = [f"  capar observe {quote(place)}{where}\n    {error}" for place, error in failed]
         head = f"{len(failed)} of {len(places)} captures failed; each alone:"
         raise CaparError("\n".join([head, *lines]))

@@ -1,4 +1,4 @@
-"""Many captures: observed by several processes, kept by one writer, taken up again after a kill."""
+"""Many captures: observed by processes or a cluster, kept by one writer, resumed after a kill."""
 
 import os
 import pickle
@@ -6,13 +6,14 @@ import signal
 import subprocess
 import sys
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from queue import Queue
-from typing import Self
+from typing import Any, Self
 
 from capar import __version__
 from capar.model.errors import CaparError
@@ -25,6 +26,9 @@ from extractors.readers.bundle.patterns import find_captures
 
 AHEAD = 2
 """So many captures a process are observed before the first of them is kept: results take memory."""
+
+CONNECT_S = 10.0
+"""How long a cluster's scheduler is waited for [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +57,7 @@ def observe_many(
     rules: Profile | str = DEFAULT,
     actionary: str | Path | None = None,
     wait_s: float = 0.0,
+    scheduler: str = "",
 ) -> Iterator[Outcome]:
     """Observe captures, in their order; failures are reported, and do not end the others.
 
@@ -66,14 +71,17 @@ def observe_many(
         rules: A rule profile or its name.
         actionary: The folder of an Actionary, or a server's address; None keeps nothing.
         wait_s: How long to wait for another writer [s].
+        scheduler: The address of a dask cluster whose workers observe, in place of ``jobs``; they
+            have this version installed, and the captures under the same paths.
 
     Raises:
-        CaparError: A pattern means no capture, the Actionary cannot be written, or a process died.
+        CaparError: A pattern means no capture, the Actionary cannot be written, a process died, or
+            there is no cluster.
     """
     places = find_captures([str(each) for each in captures])
     base = profile(rules) if isinstance(rules, str) else rules
     if actionary is None:
-        yield from _outcomes(places, jobs, base, {})
+        yield from _outcomes(places, jobs, base, {}, scheduler)
         return
     from kb import Actionary
     from kb.lookup.observations import source_files
@@ -87,7 +95,7 @@ def observe_many(
             )
             for each in store.observations()
         }
-        for outcome in _outcomes(places, jobs, base, known):
+        for outcome in _outcomes(places, jobs, base, known, scheduler):
             try:
                 if outcome.observation is not None:
                     store.add(outcome.observation)
@@ -96,38 +104,83 @@ def observe_many(
                 yield Outcome(outcome.place, error=str(error))
 
 
-def _outcomes(places: list[str], jobs: int, rules: Profile, known: Known) -> Iterator[Outcome]:
+def _outcomes(
+    places: list[str], jobs: int, rules: Profile, known: Known, scheduler: str
+) -> Iterator[Outcome]:
     """The outcome of each place, in their order."""
-    if jobs <= 1 or len(places) <= 1:
+    if not scheduler and (jobs <= 1 or len(places) <= 1):
         yield from (_outcome(place, rules, known) for place in places)
         return
     with ExitStack() as stack:
-        idle: Queue[_Process] = Queue()
-        for _ in range(min(jobs, len(places))):
-            idle.put(stack.enter_context(_Process(rules, known)))
-        pool = ThreadPoolExecutor(min(jobs, len(places)))
-        stack.callback(pool.shutdown, wait=False, cancel_futures=True)
-
-        def observed(place: str) -> Outcome:
-            process = idle.get()
-            try:
-                return process.outcome(place)
-            finally:
-                idle.put(process)
-
-        running: deque[Future[Outcome]] = deque()
+        if scheduler:
+            submit, jobs = _on_cluster(stack, scheduler, rules, known)
+        else:
+            jobs = min(jobs, len(places))
+            submit = _by_processes(stack, jobs, rules, known)
+        running: deque[Any] = deque()
         left = iter(places)
         while True:
             while len(running) < AHEAD * jobs and (place := next(left, "")):
-                running.append(pool.submit(observed, place))
+                running.append(submit(place))
             if not running:
                 return
             yield running.popleft().result()
 
 
-def _outcome(place: str, rules: Profile, known: Known) -> Outcome:
+def _by_processes(
+    stack: ExitStack, jobs: int, rules: Profile, known: Known
+) -> Callable[[str], Any]:
+    """What has a capture observed by one of several processes, and gives its future outcome."""
+    idle: Queue[_Process] = Queue()
+    for _ in range(jobs):
+        idle.put(stack.enter_context(_Process(rules, known)))
+    pool = ThreadPoolExecutor(jobs)
+    stack.callback(pool.shutdown, wait=False, cancel_futures=True)
+
+    def observed(place: str) -> Outcome:
+        process = idle.get()
+        try:
+            return process.outcome(place)
+        finally:
+            idle.put(process)
+
+    return lambda place: pool.submit(observed, place)
+
+
+def _on_cluster(
+    stack: ExitStack, address: str, rules: Profile, known: Known
+) -> tuple[Callable[[str], Any], int]:
+    """What has a capture observed by a dask cluster, and how many it observes at once.
+
+    Raises:
+        CaparError: The package is missing, nothing answers there, or no worker is there.
+    """
     try:
-        capture = read_capture(place)
+        distributed = import_module("distributed")
+    except ImportError:
+        remedy = "`pip install 'capar[cluster]'` brings it"
+        raise CaparError(f"--scheduler needs the package distributed; {remedy}") from None
+    try:
+        client = stack.enter_context(distributed.Client(address, timeout=CONNECT_S))
+    except (OSError, ValueError) as error:
+        raise CaparError(
+            f"no dask scheduler answers at {address} ({error}); `dask scheduler` prints its address"
+        ) from None
+    slots = sum(client.nthreads().values())
+    if not slots:
+        raise CaparError(f"{address} has no workers; start some: `dask worker {address}`")
+    rules, known = client.scatter([rules, dict(known)], broadcast=True)
+
+    def submit(place: str) -> Any:
+        where = str(Path.cwd() / place)  # a worker may be in another folder
+        return client.submit(_outcome, place, rules, known, where, pure=False)
+
+    return submit, slots
+
+
+def _outcome(place: str, rules: Profile, known: Known, where: str = "") -> Outcome:
+    try:
+        capture = read_capture(where or place)
         own = (rules.fingerprint, __version__, tuple(sorted(s.sha256 for s in capture.sources)))
         if known.get(capture.name) == own:
             return Outcome(place, known=capture.name)
