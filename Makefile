@@ -7,7 +7,7 @@ TESTED := .make/venv
 WORKERS ?= 3
 SOURCES := $(shell find capar extractors capar_rules kb ontology -type f -not -name '*.pyc' 2>/dev/null)
 
-.PHONY: demo test check bench docs develop clean
+.PHONY: demo test check bench docs written develop clean
 
 demo: $(VENV)/ready  ## Observe the shipped capture: six steps of drinking from a mug, and a picture.
 	$(VENV)/bin/capar demo
@@ -32,7 +32,10 @@ bench: export PYTHONDONTWRITEBYTECODE =
 bench: $(VENV)/developing  ## Ratios side by side, half an hour on two quiet cores; NAME.py --help has larger sizes.
 	for each in $(BENCHMARKS); do echo; echo "== $$each"; $(VENV)/bin/python $$each || exit 1; done
 
-docs: $(VENV)/developing  ## What is written from code: the reference of capture.toml, terms of facts, inputs of rules.
+docs: written  ## The site in .make/site, with references made from code; over HTTP it can be searched.
+	NO_MKDOCS_2_WARNING=1 $(VENV)/bin/mkdocs build --quiet
+
+written: $(VENV)/developing  ## What is written from code: the reference of capture.toml, terms of facts, inputs of rules.
 	$(VENV)/bin/python -m extractors.readers.schema.reference docs/capture-toml.md
 	$(VENV)/bin/python -m ontology.fact_kinds
 	$(VENV)/bin/python -m capar_rules.inputs
