@@ -83,8 +83,8 @@ def closed(trip: Trip) -> Closed:
         return np.zeros(3, int), np.zeros(2)
     grasps = [grasp for own in trip.motion.grasps.values() for grasp in own]
     reaching, short = (sum(len(getattr(g, name)) for g in grasps) for name in ("reaching", "short"))
-    told = {measure.name: measure.value for measure in trip.quality.told}
-    worst = [told.get(f"fingers {name}", 0.0) for name in ("inside", "off")]
+    measured = {each.name: each.value for each in (*trip.quality.gates, *trip.quality.told)}
+    worst = [measured.get(f"fingers {name}", 0.0) for name in ("inside", "off")]
     return np.array([len(grasps), reaching, reaching + short]), np.array(worst)
 
 

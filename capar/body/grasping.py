@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -28,13 +29,20 @@ REACHES_M = 0.002
 SPACING_M = 0.005
 #: Points on the axis of each bone [share of its length]; the base of the first one is the palm's
 ALONG = np.linspace([0.4, 0.0, 0.0], 1.0, 11, axis=1)
-#: Objects are measured this far from the middle of the hand [share of its length]
-NEAR_HAND = 0.75
+#: Objects are measured this far from the middle of the hand [share of its length], and distances
+#: of bones from them up to this [m]
+NEAR_HAND, FAR_M = 0.75, 0.05
+#: At so many instants of a hold, others near the hand are kept clear of [1]
+INSTANTS = 9
 #: How fast the joints of a finger close against each other [1], and steps at most
 RATES, STEPS = (1.0, 1.0, 0.7), 200
-#: Flexions with which fingers begin to close, and oppositions of the thumb that are tried [rad]
-OPEN = tuple(np.radians([-15.0, 0.0, 0.0]))
+#: Flexions at the knuckle with which fingers begin to close, those with which a thumb that is not
+#: opposed does, and oppositions of the thumb that are tried, in order [rad]
+OPEN = tuple(np.radians([-15.0, -20.0, 0.0, 15.0, 30.0, 45.0]))
+FLAT = tuple(np.radians([0.0, -15.0, -30.0, -45.0, -55.0]))
 OPPOSITIONS = tuple(np.radians([75.0, 60.0, 45.0, 30.0, 15.0, 0.0]))
+#: Halvings by which the share is found to which a finger may be closed where the hand is [1]
+HALVINGS = 6
 #: How long before contact fingers close, and before that the thumb is opposed; likewise after [s]
 CLOSE_S, OPPOSE_S = 0.2, 0.3
 
@@ -106,49 +114,63 @@ def fingers_of(measures: Measures, side: str) -> tuple[Finger, ...]:
 
 
 @dataclass(frozen=True, eq=False)
-class Touchable:
-    """Points on the surfaces of the objects near a hand, in the frame of its segment."""
+class Near:
+    """Points on the surface of an object near a hand, and where it is seen from the hand."""
 
-    tree: KDTree
-    held: Bool[np.ndarray, "points"]  #: Whether each is of an object that the hand holds
+    held: bool  #: Whether the hand holds it
+    tree: KDTree  #: In the object's frame
+    seats: RigidTransform  #: ``T_hand_object`` of the hand's segment, at some frames
 
     @classmethod
-    def of(
-        cls, hand_m: float, held: Iterable[np.ndarray], others: Iterable[np.ndarray]
-    ) -> "Touchable":
-        """Of triangles [triangles 3 3] of objects that are held, and of others."""
-        rows = [(_points(each, hand_m), True) for each in held]
-        rows += [(_points(each, hand_m), False) for each in others]
-        points = np.concatenate([np.zeros((0, 3)), *(found for found, _ in rows)])
-        return cls(
-            KDTree(points, compact_nodes=False, balanced_tree=False),
-            np.repeat([h for _, h in rows], [len(p) for p, _ in rows]),
-        )
+    def of(cls, shape: Shape, seats: RigidTransform, hand_m: float, *, held: bool) -> "Near":
+        """Of what of a surface is near a hand of a length [m] at any of some frames."""
+        middles = seats.inv().apply([0.0, 0.0, -0.5 * hand_m])
+        triangles = np.array(shape.vertices)[np.array(shape.faces)]
+        points = _points(triangles, KDTree(middles), NEAR_HAND * hand_m)
+        return cls(held, KDTree(points, compact_nodes=False, balanced_tree=False), seats)
 
-    def gaps(
-        self, finger: Finger, angles: Float[np.ndarray, "hinges"]
-    ) -> tuple[Float[np.ndarray, "3"], Bool[np.ndarray, "3"]]:
-        """How far each bone is from the nearest object [m], and whether that one is held."""
-        found, which = self.tree.query(finger.points(angles))
-        nearest, bones = found.argmin(axis=1), np.arange(3)
-        return found[bones, nearest] - finger.radii, self.held[which[bones, nearest]]
+    def at(self, seats: RigidTransform) -> "Near":
+        """The same, seen elsewhere from the hand."""
+        return replace(self, seats=seats)
+
+    def distances(self, points: Float[np.ndarray, "3 points 3"]) -> Float[np.ndarray, "3"]:
+        """How far points of each bone, in the hand's frame, are from it at the nearest [m]."""
+        turns, spots = self.inverse
+        local = np.einsum("sij,bpj->sbpi", turns, points) + spots[:, None, None]
+        found, _ = self.tree.query(local, distance_upper_bound=FAR_M)
+        return np.minimum(found.min(axis=(0, 2)), FAR_M)
+
+    @cached_property
+    def inverse(self) -> tuple[Float[np.ndarray, "seats 3 3"], Float[np.ndarray, "seats 3"]]:
+        """Matrix and translation of ``T_object_hand`` at each frame [m]."""
+        back = self.seats.inv()
+        return back.rotation.as_matrix(), np.asarray(back.translation)
+
+
+def gaps(
+    near: Iterable[Near], finger: Finger, angles: Float[np.ndarray, "hinges"]
+) -> tuple[Float[np.ndarray, "3"], Bool[np.ndarray, "3"]]:
+    """How far each bone is from the nearest object [m], and whether that one is held."""
+    points, known = finger.points(angles), [each for each in near if each.tree.n]
+    found = np.array([np.full(3, FAR_M), *(each.distances(points) for each in known)])
+    held = np.array([False, *(each.held for each in known)])
+    return found.min(axis=0) - finger.radii, held[found.argmin(axis=0)]
 
 
 def _points(
-    triangles: Float[np.ndarray, "triangles 3 3"], hand_m: float
+    triangles: Float[np.ndarray, "triangles 3 3"], middles: KDTree, reach_m: float
 ) -> Float[np.ndarray, "points 3"]:
-    """Points on the part of a surface that is near a hand, no farther apart than ``SPACING_M``.
+    """Points on the part of a surface that is near some middles, at most ``SPACING_M`` apart.
 
     Corners of triangles, which are divided at the middles of their longest edges.
     """
-    middle, kept = np.array([0.0, 0.0, -0.5 * hand_m]), [triangles.reshape(-1, 3)]
+    kept = [triangles.reshape(-1, 3)]
     while len(triangles):
         edges = triangles - triangles[:, [1, 2, 0]]
         squares = np.einsum("tij,tij->ti", edges, edges)
         longest = np.sqrt(squares.max(axis=1))
-        off = triangles[:, 0] - middle
-        away = np.sqrt(np.einsum("ti,ti->t", off, off)) - longest
-        coarse = (away < NEAR_HAND * hand_m) & (longest > SPACING_M)
+        away, _ = middles.query(triangles[:, 0])
+        coarse = (away - longest < reach_m) & (longest > SPACING_M)
         left, at = triangles[coarse], squares[coarse].argmax(axis=1)
         rows = np.arange(len(left))
         one, two, three = (left[rows, (at + step) % 3] for step in range(3))
@@ -158,8 +180,7 @@ def _points(
             [np.stack([one, half, three], axis=1), np.stack([half, two, three], axis=1)]
         )
     points = np.concatenate(kept)
-    off = points - middle
-    return points[np.einsum("pi,pi->p", off, off) < (NEAR_HAND * hand_m) ** 2]
+    return points[middles.query(points)[0] < reach_m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,14 +194,16 @@ class Grasp:
     closed: Float[np.ndarray, "hinges"]  #: Likewise while it is held
     reaching: tuple[str, ...]  #: Fingers that touch what is held
     short: tuple[str, ...]  #: Those that do not reach it, or meet something else before
+    #: How far each finger is closed at every frame: 0 is open, 1 ``opened`` and 2 ``closed``
+    shares: Float[np.ndarray, "frames 5"]
 
 
 def closed_grasp(
     measures: Measures,
     side: str,
     span: tuple[int, int],
-    held: Mapping[str, tuple[Shape, RigidTransform]],
-    others: Sequence[tuple[Shape, RigidTransform]] = (),
+    things: Sequence[str],
+    near: Iterable[Near],
 ) -> Grasp:
     """Close each finger of a hand until it touches something.
 
@@ -191,61 +214,74 @@ def closed_grasp(
         measures: Of the body.
         side: Of the hand.
         span: The first and the last frame of the hold.
-        held: By name, objects that the hand holds, with ``T_hand_object`` of the hand's segment.
-        others: Those that may be in the fingers' way.
+        things: What the hand holds.
+        near: The surfaces of that, and of others that may be in the fingers' way.
     """
-    faces = [
-        [pose.apply(np.array(s.vertices))[np.array(s.faces)] for s, pose in several]
-        for several in (held.values(), others)
-    ]
-    around = Touchable.of(measures["hand_length"], *faces)
-    opened, closed = [], []
+    around, opened, closed = list(near), [], []
     reaching: list[str] = []
     short: list[str] = []
     for finger in fingers_of(measures, side):
         thumb = finger.name.endswith(THUMB)
         start, end, touches = (_close_thumb if thumb else _close_finger)(finger, around)
         (reaching if touches else short).append(finger.name)
-        opened.append(start if touches else np.zeros_like(start))
-        closed.append(end if touches else np.zeros_like(end))
+        opened.append(start)
+        closed.append(end)
     return Grasp(
         *span,
-        tuple(held),
+        tuple(things),
         np.concatenate(opened),
         np.concatenate(closed),
         tuple(reaching),
         tuple(short),
+        np.zeros((0, len(FINGERS))),
     )
 
 
 _Closed = tuple[Float[np.ndarray, "hinges"], Float[np.ndarray, "hinges"], bool]
 
 
-def _close_finger(finger: Finger, around: Touchable) -> _Closed:
+def _close_finger(finger: Finger, around: list[Near]) -> _Closed:
     """Angles of the open and the closed finger, and whether it touches what is held."""
-    end, gaps, held = _close(finger, np.array(OPEN), np.array(RATES), around)
-    return np.zeros(3), end, bool((held & (gaps < REACHES_M)).any())
+    start = _clear(finger, [np.array([first, 0.0, 0.0]) for first in OPEN], around)
+    end, apart, held = _close(finger, start, np.array(RATES), around)
+    if (held & (apart < REACHES_M)).any():
+        return np.zeros(3), end, True
+    return np.zeros(3), _clear(finger, [np.zeros(3), start], around), False
 
 
-def _close_thumb(finger: Finger, around: Touchable) -> _Closed:
+def _close_thumb(finger: Finger, around: list[Near]) -> _Closed:
     """Likewise; first opposed as far as may be and wide open, else swung towards the palm."""
     wide = finger.ranges[1, 0]
     for opposition in OPPOSITIONS:
         start = np.array([opposition, wide, 0.0, 0.0])
-        gaps, _ = around.gaps(finger, start)
-        if gaps.min() > TOUCHES_M:
-            end, gaps, held = _close(finger, start, np.array([0.0, *RATES]), around)
-            if (held & (gaps < REACHES_M))[1:].any():
+        if gaps(around, finger, start)[0].min() > TOUCHES_M:
+            end, apart, held = _close(finger, start, np.array([0.0, *RATES]), around)
+            if (held & (apart < REACHES_M))[1:].any():
                 return start, end, True
-    end, gaps, held = _close(finger, np.zeros(4), np.array([1.0, 0.0, 0.0, 0.0]), around)
-    return np.zeros(4), end, bool((held & (gaps < REACHES_M)).any())
+    start = _clear(finger, [np.array([0.0, first, 0.0, 0.0]) for first in FLAT], around)
+    end, apart, held = _close(finger, start, np.array([1.0, 0.0, 0.0, 0.0]), around)
+    if (held & (apart < REACHES_M)).any():
+        return start, end, True
+    return start, start, False
+
+
+def _clear(
+    finger: Finger, tried: Sequence[Float[np.ndarray, "hinges"]], around: list[Near]
+) -> Float[np.ndarray, "hinges"]:
+    """The first of some angles in which no bone touches; else those in which none is so deep."""
+    found = []
+    for angles in tried:
+        found.append(float(gaps(around, finger, angles)[0].min()))
+        if found[-1] > TOUCHES_M:
+            return angles
+    return tried[int(np.argmax(found))]
 
 
 def _close(
     finger: Finger,
     start: Float[np.ndarray, "hinges"],
     rates: Float[np.ndarray, "hinges"],
-    around: Touchable,
+    around: list[Near],
 ) -> tuple[Float[np.ndarray, "hinges"], Float[np.ndarray, "3"], Bool[np.ndarray, "3"]]:
     """Turn hinges until the bones beyond them touch; no step is longer than the way that is free.
 
@@ -263,8 +299,8 @@ def _close(
         ]
     )
     for _ in range(STEPS):
-        gaps, _ = around.gaps(finger, angles)
-        touching = int(np.flatnonzero(gaps < TOUCHES_M).max(initial=-1))
+        apart, _ = gaps(around, finger, angles)
+        touching = int(np.flatnonzero(apart < TOUCHES_M).max(initial=-1))
         if touching > last:
             last, touched = touching, angles
         rates[bones <= last] = 0.0
@@ -273,11 +309,11 @@ def _close(
         if not speeds.any():
             break
         moving = speeds > 0.0
-        step = float(((gaps[moving] - NEAR_M) / speeds[moving]).min())
+        step = float(((apart[moving] - NEAR_M) / speeds[moving]).min())
         room = (finger.ranges[:, 1] - angles)[rates > 0.0] / rates[rates > 0.0]
         angles = angles + rates * min(step, float(room.min()))
     angles = touched if last >= 0 else angles
-    return angles, *around.gaps(finger, angles)
+    return angles, *gaps(around, finger, angles)
 
 
 def hand_grasps(
@@ -286,8 +322,11 @@ def hand_grasps(
     hand: RigidTransform,
     things: Mapping[str, tuple[Shape, RigidTransform]],
     spans: Iterable[tuple[int, int, Collection[str]]],
+    rate_hz: float,
 ) -> Iterator[Grasp]:
     """How a hand's fingers close in each interval in which it holds some objects.
+
+    Before and after it they are closed no further than objects let them where the hand is then.
 
     Args:
         measures: Of the body.
@@ -295,18 +334,69 @@ def hand_grasps(
         hand: ``T_world_hand`` of its segment at every frame.
         things: Shape and ``T_world_thing`` at every frame of every object.
         spans: First and last frame, and what is held meanwhile.
+        rate_hz: Frames a second.
     """
+    fingers, at_s = fingers_of(measures, side), np.arange(len(hand)) / rate_hz
+    edges = np.cumsum([len(finger.axes) for finger in fingers])[:-1]
     for first, last, names in spans:
-        part = slice(first, last + 1)
+        away = np.maximum(first / rate_hz - at_s, at_s - last / rate_hz)
+        close = [minimum_jerk(1.0 - max(s, 0.0) / CLOSE_S) for s in away]
+        oppose = [minimum_jerk(1.0 - max(s - CLOSE_S, 0.0) / OPPOSE_S) for s in away]
+        wanted = np.add(close, oppose)
+        begins, until = np.flatnonzero(wanted)[[0, -1]] + [0, 1]
+        part = slice(begins, until)
         seats = {n: hand[part].inv() * path[part] for n, (_, path) in things.items()}
-        held = {name: (things[name][0], _usual(seats[name])) for name in sorted(names)}
-        others = [
-            (things[name][0], seat[frame])
-            for name, seat in seats.items()
-            for frame in (0, -1)
-            if name not in names
+        near = {
+            n: Near.of(things[n][0], seat, measures["hand_length"], held=n in names)
+            for n, seat in seats.items()
+        }
+        own = slice(first - begins, last + 1 - begins)
+        some = np.unique(np.linspace(first, last, INSTANTS).round().astype(int)) - begins
+        around = [
+            near[n].at(
+                RigidTransform.concatenate([_usual(seat[own])]) if n in names else seat[some]
+            )
+            for n, seat in seats.items()
         ]
-        yield closed_grasp(measures, side, (first, last), held, others)
+        grasp = closed_grasp(measures, side, (first, last), sorted(names), around)
+        opened, closed = (np.split(angles, edges) for angles in (grasp.opened, grasp.closed))
+        shares = np.tile(wanted[:, None], len(fingers))
+        for frames in (range(first - 1, begins - 1, -1), range(last + 1, until)):
+            for frame in frames:
+                now = [each.at(seats[n][[frame - begins]]) for n, each in near.items()]
+                most = np.minimum(wanted[frame], shares[frame - frames.step])
+                rows = zip(fingers, opened, closed, most, strict=True)
+                shares[frame] = [_share(*row, now) for row in rows]
+        yield replace(grasp, shares=shares)
+
+
+def _share(
+    finger: Finger,
+    opened: Float[np.ndarray, "hinges"],
+    closed: Float[np.ndarray, "hinges"],
+    most: float,
+    near: list[Near],
+) -> float:
+    """How far a finger may be closed where the hand is, no further than some share."""
+
+    def touches(share: float) -> bool:
+        angles = _closed_by(share, opened, closed)
+        return float(gaps(near, finger, angles)[0].min()) < 0.0
+
+    low, high = (0.0, most) if touches(most) else (most, most)
+    for _ in range(HALVINGS if low < high else 0):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if touches(middle) else (middle, high)
+    return low
+
+
+def _closed_by(
+    share: Float[np.ndarray, "*frames"] | float,
+    opened: Float[np.ndarray, "hinges"],
+    closed: Float[np.ndarray, "hinges"],
+) -> Float[np.ndarray, "*frames hinges"]:
+    """Angles of fingers that are closed so far, as ``Grasp.shares`` has it [rad]."""
+    return np.minimum(share, 1.0) * opened + np.maximum(share - 1.0, 0.0) * (closed - opened)
 
 
 def _usual(poses: RigidTransform) -> RigidTransform:
@@ -315,19 +405,15 @@ def _usual(poses: RigidTransform) -> RigidTransform:
     return RigidTransform.from_components(middle, poses.rotation.mean())
 
 
-def flexions(
-    frames: int, rate_hz: float, grasps: Iterable[Grasp]
-) -> Float[np.ndarray, "frames hinges"]:
+def flexions(frames: int, grasps: Iterable[Grasp]) -> Float[np.ndarray, "frames hinges"]:
     """The angles of all fingers of a hand at every frame [rad]: open between its grasps."""
     out, most = np.zeros((frames, len(hinge_names("right")))), np.zeros(frames)
-    at_s = np.arange(frames) / rate_hz
+    counts = [sum(name.startswith(f"right_{f}_") for name in hinge_names("right")) for f in FINGERS]
     for grasp in grasps:
-        away = np.maximum(grasp.first / rate_hz - at_s, at_s - grasp.last / rate_hz)
-        close = np.array([minimum_jerk(1.0 - max(s, 0.0) / CLOSE_S) for s in away])
-        oppose = np.array([minimum_jerk(1.0 - max(s - CLOSE_S, 0.0) / OPPOSE_S) for s in away])
-        own = oppose[:, None] * grasp.opened + close[:, None] * (grasp.closed - grasp.opened)
-        nearer = oppose + close > most
-        out[nearer], most = own[nearer], np.maximum(most, oppose + close)
+        shares = np.repeat(grasp.shares, counts, axis=1)
+        nearer = shares.max(axis=1) > most
+        out[nearer] = _closed_by(shares, grasp.opened, grasp.closed)[nearer]
+        most = np.maximum(most, shares.max(axis=1))
     return out
 
 
@@ -422,8 +508,9 @@ def seen_flexions(
         apart = all(fact.last < first or last < fact.first for first, last, _ in spans)
         if fact.other in things and apart:
             spans.append((fact.first, fact.last, {fact.other}))
-    grasps = hand_grasps(measures, sensor.side, hand, things, spans)
-    return flexions(len(capture.times), capture.rate_hz, grasps)
+    rate_hz = capture.rate_hz
+    grasps = hand_grasps(measures, sensor.side, hand, things, spans, rate_hz)
+    return flexions(len(hand), grasps)
 
 
 def known_path(stream: Stream) -> RigidTransform:

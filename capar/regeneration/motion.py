@@ -54,7 +54,9 @@ class Motion:
         sites = plan.human.sites(self.postures, [f"{side}_hand" for side in plan.hands])
         for side in plan.hands:
             hand = transforms(*sites[f"{side}_hand"])
-            found = hand_grasps(plan.human.measures, side, hand, things, self._spans(side))
+            found = hand_grasps(
+                plan.human.measures, side, hand, things, self._spans(side), plan.source.rate_hz
+            )
             out[side] = tuple(found)
         return out
 
@@ -73,8 +75,8 @@ class Motion:
     @cached_property
     def fingered(self) -> tuple[Human, Float[np.ndarray, "frames posture"]]:
         """The body with five fingers on each hand, and its postures."""
-        frames, rate_hz = len(self.postures), self.plan.source.rate_hz
-        hands = {side: flexions(frames, rate_hz, own) for side, own in self.grasps.items()}
+        frames = len(self.postures)
+        hands = {side: flexions(frames, own) for side, own in self.grasps.items()}
         return fingered(self.plan.human, self.postures, hands)
 
 

@@ -121,6 +121,7 @@ def quality(motion: Motion) -> Quality:
     """Verify a motion at every frame."""
     plan, hands = motion.plan, performed_hands(motion)
     contacts, told = _contact_gates(motion)
+    inside, closing = _fingers(motion)
     feet = plan.human.sites(motion.postures, ["right_foot", "left_foot"])
     slid = (worst_of(_gone(spots), name) for name, (spots, _) in feet.items())
     gates = (
@@ -128,6 +129,7 @@ def quality(motion: Motion) -> Quality:
         *_guide_gates(plan, hands),
         *_throw_gates(plan, hands),
         *contacts,
+        *inside,
         within("feet", max(slid, key=lambda worst: worst[0]), 3.0),
         *joint_gates(plan.human, motion.postures, plan.source.rate_hz),
         _still_gate(plan),
@@ -135,7 +137,7 @@ def quality(motion: Motion) -> Quality:
         *_borne_gates(plan),
         *_together_gates(plan, hands),
     )
-    return Quality(gates, (*told, *_fingers(motion)))
+    return Quality(gates, (*told, *closing))
 
 
 def _gone(spots: Float[np.ndarray, "frames 3"]) -> Float[np.ndarray, "frames"]:
@@ -280,14 +282,14 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], tuple[Measure, ...]]:
     return gates, tuple(told)
 
 
-def _fingers(motion: Motion) -> list[Measure]:
-    """How deep a bone of the five fingers is in anything, how far they are off what they hold [mm].
+def _fingers(motion: Motion) -> tuple[list[Gate], list[Measure]]:
+    """No bone of the five fingers is inside anything; how many close, and how far they are off.
 
-    Fingers that do not reach what the hand holds stay open. No measures where nothing is held.
+    Fingers that do not reach what the hand holds stay open. Nothing where nothing is held.
     """
     grasps, plan = [grasp for own in motion.grasps.values() for grasp in own], motion.plan
     if not grasps:
-        return []
+        return [], []
     human, postures = motion.fingered
     around, inside, off = Surroundings(human, plan.scene), [NONE], [NONE]
     things = {name: vectors(path) for name, path in plan.things.items()}
@@ -308,15 +310,10 @@ def _fingers(motion: Motion) -> list[Measure]:
         for which in ("reaching", "short")
     )
     unit, away = f"of {len(reaching + short)}", ", ".join(sorted(set(short)))
-    return [
+    off_m, frame, bodies = max(off)
+    return [within("fingers inside", max(inside), 2.0)], [
         Measure("fingers that close", float(len(reaching)), unit, -1, away and f"not {away}"),
-        *(
-            Measure(name, 1e3 * value_m, "mm", frame, bodies)
-            for name, (value_m, frame, bodies) in (
-                ("fingers inside", max(inside)),
-                ("fingers off", max(off)),
-            )
-        ),
+        Measure("fingers off", 1e3 * off_m, "mm", frame, bodies),
     ]
 
 

@@ -1,5 +1,7 @@
 """Fingers close onto what a hand holds: they touch it, are not inside of it, and open before."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -11,10 +13,12 @@ from capar.body.grasping import (
     FINGERS,
     OPPOSE_S,
     Grasp,
+    Near,
     closed_grasp,
     fingered,
     fingers_of,
     flexions,
+    hand_grasps,
     hinge_names,
 )
 from capar.body.human import Human
@@ -23,6 +27,7 @@ from capar.body.virtual_scenes import Thing, box, cup, grips
 from capar.model.capture import Shape
 
 RATE_HZ = 100.0
+THERE = RigidTransform.identity()
 
 
 def rod(radius_m: float, height_m: float) -> Shape:
@@ -41,7 +46,12 @@ THINGS = {
 SHORT_ROD = (rod(0.014, 0.05), "side", True)
 
 
-def taken(what: tuple[Shape, str, bool], who: str, side: str) -> tuple[Grasp, RigidTransform]:
+def taken(
+    what: tuple[Shape, str, bool],
+    who: str,
+    side: str,
+    off: RigidTransform = THERE,
+) -> tuple[Grasp, RigidTransform]:
     """How a hand closes on an object at the easiest grip, and ``T_hand_object``."""
     shape, kind, is_round = what
     human = Human.of(ready_made(who))
@@ -49,8 +59,11 @@ def taken(what: tuple[Shape, str, bool], who: str, side: str) -> tuple[Grasp, Ri
     turn = Rotation.from_quat(site.quat, scalar_first=True)
     palm = RigidTransform.from_components(site.pos, turn)
     thing = Thing("thing", shape, (0.0, 0.0, 0.0), round=is_round)
-    seat = palm * grips(thing, side, kind, human.measures)[0].inv()
-    return closed_grasp(human.measures, side, (0, 1), {"thing": (shape, seat)}), seat
+    seat = off * palm * grips(thing, side, kind, human.measures)[0].inv()
+    near = Near.of(
+        shape, RigidTransform.concatenate([seat]), human.measures["hand_length"], held=True
+    )
+    return closed_grasp(human.measures, side, (0, 1), ["thing"], [near]), seat
 
 
 def gaps(grasp: Grasp, shape: Shape, seat: RigidTransform, who: str, side: str) -> dict[str, float]:
@@ -108,16 +121,55 @@ def test_a_thumb_is_opposed_to_the_fingers_around_a_mug_and_flat_on_a_crate() ->
     assert flat[opposed] < np.radians(15.0)
 
 
+def _coming(far_m: float) -> tuple[RigidTransform, Grasp]:
+    """``T_hand_mug`` of a hand that comes along its fingers, takes a mug for a second, and goes."""
+    _, seat = taken(THINGS["mug"], "man", "right")
+    frames = np.arange(300)
+    away = np.maximum(np.maximum(100 - frames, frames - 200), 0) / RATE_HZ / CLOSE_S
+    seats = RigidTransform.from_translation(np.outer(far_m * away, [0.0, 0.0, -1.0])) * seat
+    hand, mug = RigidTransform.concatenate([RigidTransform.identity()] * 300), THINGS["mug"][0]
+    spans = [(100, 200, {"mug"})]
+    measures = ready_made("man")
+    (grasp,) = hand_grasps(measures, "right", hand, {"mug": (mug, seats)}, spans, RATE_HZ)
+    return seats, grasp
+
+
 def test_fingers_are_open_before_and_after_and_closed_meanwhile() -> None:
-    grasp, _ = taken(THINGS["mug"], "man", "right")
-    held = Grasp(100, 200, (), grasp.opened, grasp.closed, grasp.reaching, grasp.short)
-    angles = flexions(300, RATE_HZ, [held])
+    _, grasp = _coming(0.0)
+    angles = flexions(300, [grasp])
     np.testing.assert_allclose(angles[100:201], np.tile(grasp.closed, (101, 1)))
     away = round((CLOSE_S + OPPOSE_S) * RATE_HZ) + 1
     assert not angles[: 100 - away].any()
     assert not angles[201 + away :].any()
     straight = [not name.startswith("right_thumb") for name in hinge_names("right")]
     assert not angles[: 100 - round(CLOSE_S * RATE_HZ), straight].any()
+
+
+def test_fingers_wait_for_the_hand_to_be_there_before_they_close_around_a_mug() -> None:
+    seats, grasp = _coming(0.04)
+    found = {}
+    for name, own in (("waits", grasp), ("does not", _coming(0.0)[1])):
+        angles = flexions(300, [own])
+        found[name] = min(
+            min(
+                gaps(
+                    replace(grasp, closed=angles[at]), THINGS["mug"][0], seats[at], "man", "right"
+                ).values()
+            )
+            for at in range(80, 221, 4)
+        )
+    assert found["waits"] > -0.001
+    assert found["does not"] < -0.002
+    assert grasp.shares[100:201].min() == 2.0
+
+
+@pytest.mark.parametrize("who", ["man", "child"])
+def test_a_thumb_that_lies_inside_a_crate_is_bent_out_of_it(who: str) -> None:
+    """The palm is 3 mm too deep, and turned by 3 degrees about the hand's edge."""
+    turn = Rotation.from_rotvec([-0.05, 0.0, 0.0])
+    off = RigidTransform.from_components([0.0, -0.003, 0.0], turn)
+    grasp, seat = taken(THINGS["crate"], who, "right", off)
+    assert min(gaps(grasp, THINGS["crate"][0], seat, who, "right").values()) > -0.001
 
 
 @pytest.mark.parametrize("side", SIDES)

@@ -97,6 +97,16 @@ def _sunk(motion: Motion) -> Motion:
     return replace(motion, plan=replace(motion.plan, scene=scene, things=things))
 
 
+def _clenched(motion: Motion) -> Motion:
+    """Fingers that are bent by a fifth more than they should be."""
+    out = replace(motion)
+    vars(out)["grasps"] = {
+        side: tuple(replace(grasp, closed=1.2 * grasp.closed) for grasp in own)
+        for side, own in motion.grasps.items()
+    }
+    return out
+
+
 @pytest.mark.parametrize(
     ("spoilt", "gate"),
     [
@@ -104,8 +114,9 @@ def _sunk(motion: Motion) -> Motion:
         (_slid, "feet"),
         (_let_go, "on the way"),
         (_sunk, "penetration"),
+        (_clenched, "fingers inside"),
     ],
-    ids=["a jump", "sliding feet", "a loose grip", "a sunk mug"],
+    ids=["a jump", "sliding feet", "a loose grip", "a sunk mug", "a clenched hand"],
 )
 def test_a_spoilt_motion_does_not_pass(spoilt: object, gate: str) -> None:
     motion, _ = _done("drink", "same")
