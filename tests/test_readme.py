@@ -30,6 +30,7 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "capar").mkdir()
     (tmp_path / "capar" / "demo").symlink_to(ROOT / "capar" / "demo")
     (tmp_path / "examples").symlink_to(ROOT / "examples")
+    (tmp_path / "tests").symlink_to(ROOT / "tests")
     (tmp_path / "mine").mkdir()
     return tmp_path
 
