@@ -1,5 +1,6 @@
 """Look at captures: what a file holds, a first capture.toml, a picture, the measured facts."""
 
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -131,9 +132,9 @@ def new_capture(
 
     It is read back at once, and the lines that need a look are listed.
     """
-    from extractors.readers.bundle.capture_toml import read_capture
+    from extractors.readers.bundle.capture_toml import read_capture, takes
     from extractors.readers.drafting.draft import EDIT, draft
-    from extractors.readers.registry import read_recording
+    from extractors.readers.registry import own_bundle, read_recording, says_itself
 
     if schema:
         from extractors.readers.schema.reference import json_schema
@@ -146,8 +147,11 @@ def new_capture(
     path = output / "capture.toml" if folder else output
     if path.exists() and not force:
         raise FileError(path, "is there already.", "Name another with -o, or say --force.")
-    recordings = [read_recording(each) for each in files]
-    text = draft(recordings, path.parent, files[0].name.split(".")[0])
+    shown = Path(os.path.relpath(files[0].resolve(), path.parent.resolve())).as_posix()
+    first, *_ = takes(files[0]) or [""] if says_itself(files[0]) else [""]
+    text = own_bundle(files[0], shown, first) or draft(
+        [read_recording(each) for each in files], path.parent, files[0].name.split(".")[0]
+    )
     path.parent.mkdir(parents=True, exist_ok=True)
     emit(text, path)
     typer.echo(f"wrote {path}")
@@ -155,7 +159,7 @@ def new_capture(
         if EDIT in line:
             typer.echo(f"{path}:{number}: look at: {line.strip()}")
     try:
-        capture = read_capture(path)
+        capture = read_capture(f"{path}:{first}" if first else path)
     except CaparError as error:
         typer.echo(f"it cannot be read yet: {error}")
     else:

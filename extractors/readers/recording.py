@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
 from capar.model.capture import UNITS as UNITS
-from capar.model.capture import Notice, Source, Stream
+from capar.model.capture import Notice, Shape, Source, Stream
 from capar.model.errors import CaptureError
 
 
@@ -44,6 +44,9 @@ class Recording:
 
     parents: Mapping[str, str] = field(default_factory=dict)
     """Each joint's parent, where the file holds a skeleton."""
+
+    shapes: Mapping[str, Shape] = field(default_factory=dict)
+    """Surfaces of bodies in their own frames [m], where the file holds them."""
 
     notices: tuple[Notice, ...] = ()
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from capar.model.errors import CaparError, CaptureError, FileError, UnknownNameError
 from extractors.readers.file_access import HEAD, read_bytes
@@ -11,6 +11,7 @@ from extractors.readers.formats import (
     bvh,
     c3d,
     csv_table,
+    demonstrations,
     json_trajectory,
     motive,
     npz,
@@ -22,6 +23,7 @@ from extractors.readers.formats import (
 from extractors.readers.recording import Recording
 
 Options = Mapping[str, Any]
+Read = TypeVar("Read")
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,10 @@ class Reader:
     read: Callable[[Path, Options], Recording]
     options: frozenset[str] = frozenset()
     """What a capture.toml may say about a file of the format."""
+
+    draft: Callable[[Path, str, str], str] | None = None
+    """The capture.toml of a file that itself says what is what: of its path, how the path is to be
+    stated, and the trial in it that is described."""
 
 
 READERS = (
@@ -49,6 +55,14 @@ READERS = (
         vicon.recognises,
         vicon.read,
         vicon.OPTIONS,
+    ),
+    Reader(
+        "hdf5",
+        "HDF5 demonstrations of robomimic and robosuite",
+        demonstrations.recognises,
+        demonstrations.read,
+        demonstrations.OPTIONS,
+        demonstrations.draft,
     ),
     Reader("npz", "NPZ: arrays that capture.toml maps", npz.recognises, npz.read, npz.OPTIONS),
     Reader(
@@ -104,8 +118,40 @@ def read_recording(path: Path | str, *, options: Options | None = None) -> Recor
     for name in sorted(given):
         if name not in reader.options:
             raise UnknownNameError(f"{reader.format} option", name, reader.options, where=str(path))
+    return _undamaged(path, reader, lambda: reader.read(path, given))
+
+
+def says_itself(path: Path) -> bool:
+    """Whether a file itself says what in it is what, and amounts to a capture.toml."""
+    return path.is_file() and _drafting(path) is not None
+
+
+def _drafting(path: Path) -> Reader | None:
+    head = read_bytes(path, HEAD)
+    return next((each for each in READERS if each.draft and each.recognises(path, head)), None)
+
+
+def own_bundle(path: Path, shown: str, trial: str = "") -> str:
+    """The capture.toml that a file itself amounts to; empty where a person has to write it.
+
+    Args:
+        path: The file.
+        shown: Its path as the text states it.
+        trial: The trial that is described; of several none is, if it is not given.
+
+    Raises:
+        CaparError: The file is damaged, or has no such trial.
+    """
+    reader = _drafting(path)
+    if reader is None or (draft := reader.draft) is None:
+        return ""
+    return _undamaged(path, reader, lambda: draft(path, shown, trial))
+
+
+def _undamaged(path: Path, reader: Reader, read: Callable[[], Read]) -> Read:
+    """What a reader reads; whatever a damaged file makes it raise becomes an error of ours."""
     try:
-        return reader.read(path, given)
+        return read()
     except CaptureError as error:
         raise CaptureError(f"{path}: {error}") from error
     except CaparError:

@@ -1,7 +1,7 @@
 """Bodies and marker sets of files as poses over time in one world and on one clock."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import partial
 from itertools import pairwise
@@ -11,7 +11,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.model import geometry
-from capar.model.capture import Conventions, Notice, Source, Stream, notice, upward
+from capar.model.capture import Conventions, Notice, Shape, Source, Stream, notice, upward
 from capar.model.errors import CaptureError
 from extractors.faults.quaternion_order import order_notices
 from extractors.readers.bundle.shapes import Frame, mirrored, transform
@@ -153,6 +153,9 @@ class WorldRecording:
     conventions: Conventions
     """By which it was brought there."""
 
+    shapes: Mapping[str, Shape] = field(default_factory=dict)
+    """Surfaces of bodies in their own frames, where the file holds them."""
+
     places: Mapping[str, str] = field(default_factory=dict)
     """Place on the body of joints and markers, where the capture states it."""
 
@@ -192,6 +195,7 @@ def to_world(recording: Recording, *, unit_m: float, up: str, left_handed: bool)
         parents=recording.parents,
         notices=(*recording.notices, *order),
         conventions=Conventions(unit_m, up, left_handed),
+        shapes=recording.shapes,
     )
 
 
@@ -245,6 +249,8 @@ def find_body(entry: Tracked, files: Files) -> Body:
     recording = files[file]
     stream = _offset_by(recording.bodies[entry.body], offset)
     frame = _skeleton_frame(recording, entry.body, stream)
+    if shape := recording.shapes.get(entry.body):
+        frame.recorded = replace(shape, vertices=offset.inv().apply(shape.vertices))
     return Body(stream, frame, conventions=recording.conventions)
 
 

@@ -1,5 +1,6 @@
 """The capture bundle: a capture.toml that says what is what in the files it names."""
 
+import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
@@ -49,7 +50,13 @@ from extractors.readers.names import (
     without_side,
     words_of,
 )
-from extractors.readers.registry import READER_OPTIONS, read_recording, reader_for
+from extractors.readers.registry import (
+    READER_OPTIONS,
+    own_bundle,
+    read_recording,
+    reader_for,
+    says_itself,
+)
 from extractors.readers.schema.capture import (
     CaptureFile,
     ManyObjects,
@@ -73,6 +80,8 @@ LINKS = {"hand": "arm", "foot": "leg", "head": "neck", "eyes": "neck"}
 def find_place(place: str | Path) -> tuple[Path, str]:
     """The capture.toml of a folder, a file, or a motion file beside it, and a ``:take``.
 
+    A motion file that says itself what is what stands for its own.
+
     Raises:
         FileError: There is none.
     """
@@ -83,7 +92,7 @@ def find_place(place: str | Path) -> tuple[Path, str]:
         path = Path(stem)
     path = path / FILE if path.is_dir() else path
     beside = path.parent / FILE
-    if path.is_file() and path.suffix != ".toml":
+    if path.is_file() and path.suffix != ".toml" and not says_itself(path):
         if not beside.is_file():
             raise FileError(
                 text,
@@ -114,7 +123,14 @@ def place_of(file: Path, name: str) -> str:
 
 def take_words(place: str | Path) -> dict[str, dict[str, str]]:
     """What ``{...}`` stands for in each take of a bundle; empty where it has one take only."""
-    return _takes(*read_toml(find_place(place)[0]))
+    return _takes(*_document(find_place(place)[0]))
+
+
+def _document(path: Path, trial: str = "") -> tuple[dict[str, Any], Location]:
+    """The content of a capture.toml, or of that which a motion file itself amounts to."""
+    if path.suffix != ".toml" and says_itself(path):
+        return tomllib.loads(own_bundle(path, path.name, trial)), Location(path, {})
+    return read_toml(path)
 
 
 def _takes(data: dict[str, Any], location: Location) -> dict[str, dict[str, str]]:
@@ -132,13 +148,15 @@ def open_bundle(place: str | Path) -> tuple[CaptureFile, str]:
         CaparError: A key or value is not as the schema says.
     """
     file, take = find_place(place)
-    data, location = read_toml(file)
+    data, location = _document(file)
     known = _takes(data, location)
     if take and take not in known:
         raise UnknownNameError("take", take, known, where=location.where("takes"))
     if known and not take:
         remedy = f"Name one of them: {place}:{next(iter(known))}"
         raise FileError(location.where("takes"), "has several takes.", remedy)
+    if take:
+        data, _ = _document(file, take)
     return validated(CaptureFile, substituted(data, known.get(take, {})), location), take
 
 
@@ -217,7 +235,7 @@ def read_capture(place: str | Path) -> Capture:
         frame = bodies[entry.name].frame if entry.name in bodies else Frame()
         frame.owner = entry.name
         frames.append(frame)
-        shapes[entry.name] = build_shape(entry.shape, frame) if entry.shape else None
+        shapes[entry.name] = build_shape(entry.shape, frame) if entry.shape else frame.recorded
     sensors = [_sensor(each, _stream(each, bundle), shapes[each.name]) for each in bundle.sensors]
     objects = _objects(bundle, shapes)
     streams = {each.name: each.stream for each in sensors}
@@ -370,6 +388,7 @@ def _sensor(entry: SensorEntry, stream: Stream, shape: Shape | None) -> Sensor:
         eye=(entry.eye[0], entry.eye[1], entry.eye[2]),
         shape=shape,
         agent=entry.agent,
+        part_of=entry.part_of,
     )
 
 

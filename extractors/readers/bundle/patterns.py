@@ -7,6 +7,7 @@ from pathlib import Path
 
 from capar.model.errors import FileError
 from extractors.readers.bundle.capture_toml import FILE, find_place, takes
+from extractors.readers.registry import says_itself
 
 SUFFIX = ".motion.toml"
 """How files end that state claims about captures, which are no captures."""
@@ -52,7 +53,9 @@ def _places(folder: Path, pattern: str) -> Iterator[Path]:
         found = glob(pattern, root_dir=folder, recursive=True, include_hidden=True)  # noqa: PTH207
     for path in (folder / each for each in sorted(found)):
         if (path / FILE).is_file() or (
-            path.is_file() and path.suffix == ".toml" and not path.name.endswith(SUFFIX)
+            path.is_file()
+            and not path.name.endswith(SUFFIX)
+            and (path.suffix == ".toml" or says_itself(path))
         ):
             yield path
         elif path.is_dir():

@@ -161,6 +161,9 @@ class Frame:
     mirrored: bool = False
     """Whether the body's file is left-handed."""
 
+    recorded: Shape | None = None
+    """The body's surface, if the file holds it."""
+
     owner: str = ""
     """Name of the sensor or object, for notices."""
 

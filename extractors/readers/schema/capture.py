@@ -251,6 +251,11 @@ class SensorEntry(Tracked):
     )
     side: Literal["right", "left", "none"] = key("Its side.", "none")
     link: str | None = key("The chain that it ends, like right_arm; derived if not given.", None)
+    part_of: str = key(
+        "The sensor whose end-effector this one rides on too, as a finger on a hand: what it "
+        "touches that end-effector touches.",
+        "",
+    )
     role: Literal["acts", "attends"] | None = key(
         "``acts`` makes segments, ``attends`` makes none; head and eyes attend, else acts.", None
     )
@@ -443,6 +448,7 @@ class MotionFile(Entry):
         "angles about axes that turn with the body; helical.",
         None,
     )
+    demo: str | None = key("HDF5: the name of the demonstration; the first if not given.", None)
     folder: str | None = key("JSON in a tar archive: the folder in it.", None)
     time_unit_s: Positive | None = key(
         "JSON: seconds per unit of the time stamps; 0.001.", None, unit="s"

@@ -50,7 +50,7 @@ class Location:
 
     def where(self, key: str = "") -> str:
         """``file:line`` of a key, or of the table."""
-        return f"{self.file}:{self.line(key)}"
+        return f"{self.file}:{self.line(key)}" if self.lines else str(self.file)
 
 
 class Entry(BaseModel):
