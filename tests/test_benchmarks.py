@@ -13,6 +13,7 @@ SMALLEST = {
     "attention": "--minutes 0.1 --sample 5 --faces 500",
     "body": "--seeds 1 --seconds 0.5",
     "contact": "--minutes 0.1 --sample 5 --faces 500",
+    "demonstrations": "judge nowhere",
     "edges": "--every 128 --rates 100 --noises 0.5",
     "explaining": "--trials 1",
     "live": "--events 10 --minutes 0.02 --faces 500",

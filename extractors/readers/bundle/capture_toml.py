@@ -228,7 +228,10 @@ def read_capture(place: str | Path) -> Capture:
     agents = [Agent(each.name, each.kind, each.measures) for each in document.performers]
     contact, file = document.contact, document.location.file
     name = document.name or file.parent.name.strip(".") or file.parent.resolve().name
-    own = source_of(file, "capture.toml", recorded_at=document.recorded or "")
+    own = []
+    if file.suffix == ".toml":
+        stated = source_of(file, "capture.toml", recorded_at=document.recorded or "")
+        own.append(replace(stated, path=file.name))
     frames, shapes = [], {}
     entries: list[SensorEntry | ObjectEntry] = [*bundle.sensors, *bundle.objects]
     for entry in entries:
@@ -261,7 +264,7 @@ def read_capture(place: str | Path) -> Capture:
             ),
             force_transfer=document.force_transfer,
             sources=(
-                replace(own, path=file.name),
+                *own,
                 *(each.source for each in files.values()),
                 *meshes,
             ),
