@@ -133,6 +133,9 @@ class Draft:
         self.gripping = Gripping(source, scene, self.old, self.new)
         self.clear = ClearTask(self.gripping.around, source.met)
         self.grips: tuple[Grip, ...] = ()
+        self.firm = 1.0
+        """How firmly hands are led in key postures, 1 being usual in a hold [1]."""
+
         self.postures = 0
         """How many key postures were tried."""
 
@@ -214,7 +217,7 @@ class Draft:
             for grip in grips
             if grip.hold.first <= frame <= grip.hold.last
         }
-        firm, head = dict.fromkeys(palms, 1.0), vectors(self.head[frame])
+        firm, head = dict.fromkeys(palms, self.firm), vectors(self.head[frame])
         return Targets(palms, firm, head, float(self.firmness[frame]), self.looks[frame])
 
     def _deepest_cut(self, solver: Solver, grips: list[Grip], frame: int) -> Pair | None:

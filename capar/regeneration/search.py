@@ -8,6 +8,7 @@ step    what is tried                                     the case that needs it
 goals   one for each object and event                     (no alternative)
 grips   the recorded one, turned: smallest turns first    a table or crate of another height
         drawn back along the fingers                      a forearm inside a large object
+        with hands led more firmly                        a wrist at its limit, bent as posture asks
 place   the given one, then twelve around it              a wrist at its limit
 paths   the recorded one, lifted, drawn back, kept off    a table's edge, the rim of a mug
 motion  as planned                                        nearly all
@@ -60,6 +61,8 @@ BY_CARE = {"penetration", "free hand clear", "event position", "event rotation",
 
 EASY = 0.5
 """As large a share of what is allowed a grip may be missed by where the motion of others fails."""
+
+NEARLY = 3.0  # A grip that is missed by more no hand that is led more firmly reaches [1].
 
 MOST_TURNS, FEW_TURNS = 24, 6
 """Turns of a grip that are tried; where another place or a remedy is sought [1]."""
@@ -211,16 +214,19 @@ def choose_grips(draft: Draft, most: int = MOST_TURNS, ratio: float = 1.0) -> st
     """Choose a grip for every hold; returns what is missed, empty if nothing.
 
     The first of so many turns of the recorded grip that is missed by no more than a share of what
-    is allowed, else the one that is missed least; if all of them are tried, and the forearm is
-    inside the object, then of those drawn back along the fingers.
+    is allowed, else the one that is missed least. If all of them are tried and none reaches, then,
+    where the forearm is inside the object, of those drawn back along the fingers, or, where one is
+    nearly reached, of all with hands led as firmly as the last of ``CARES`` leads them.
     """
     chosen: list[Grip] = []
     for group in _groups(led_holds(draft.source.holds, draft.source.co_held)):
         options = turns(draft.scene.thing(group[0].thing))[:most]
         miss, grips = _best_grips(draft, chosen, group, options, ratio)
-        if miss.ratio > 1.0 and miss.cuts and most == MOST_TURNS:
-            drawn = _best_grips(draft, chosen, group, drawn_turns())
-            miss, grips = min((miss, grips), drawn, key=lambda tried: tried[0].ratio)
+        if miss.ratio > 1.0 and most == MOST_TURNS and (miss.cuts or miss.ratio < NEARLY):
+            draft.firm = draft.firm if miss.cuts else CARES[-1].weight
+            more = drawn_turns() if miss.cuts else options
+            others = _best_grips(draft, chosen, group, more, ratio)
+            miss, grips = min((miss, grips), others, key=lambda tried: tried[0].ratio)
         if miss.ratio > 1.0:
             return miss.sentence
         chosen += grips

@@ -22,6 +22,7 @@ from capar.regeneration.quality import Gate, quality
 from capar.regeneration.scenes import moved, raised
 from capar.regeneration.search import reachable
 from capar.regeneration.sources import body_hand_frame
+from capar.regeneration.styles import own_style
 
 pytestmark = pytest.mark.long
 
@@ -224,6 +225,17 @@ def test_where_the_motion_of_a_grip_fails_one_that_is_missed_by_less_is_tried(
     motion, found = search.best_motion(draft)
     assert found.passed
     assert [abs(grip.turn.pitch) for grip in motion.plan.grips] == [0.15]
+
+
+@pytest.mark.parametrize(("ratio", "firm"), [(0.9, 1.0), (2.0, 2.0), (4.0, 1.0)])
+def test_what_is_nearly_reached_is_tried_with_hands_that_are_led_more_firmly(
+    monkeypatch: pytest.MonkeyPatch, ratio: float, firm: float
+) -> None:
+    source = recorded("touch")
+    monkeypatch.setattr(Draft, "missed", lambda draft, *_: Miss(ratio / draft.firm, "missed"))
+    draft = Draft(source, source.scene, source.human, own_style(source))
+    assert search.choose_grips(draft) == ("missed" if ratio > 3.0 else "")
+    assert draft.firm == firm
 
 
 def test_a_capture_without_a_head_is_refused() -> None:
