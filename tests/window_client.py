@@ -20,7 +20,7 @@ class Client:
     """
 
     def __init__(self, address: str, **headers: str) -> None:
-        place = address.rstrip("/")
+        place = address.partition("?")[0].rstrip("/")
         host = place.split("/")[2]
         self._socket = connect(
             place.replace("http://", "ws://"),

@@ -28,6 +28,9 @@ CONTACT_CLASSES = frozenset(
 )
 """Levin's chapters whose verbs say what a body does to things and to itself."""
 
+SPOKEN = frozenset([Touching, Moving, OfAgent])
+"""Facts that the sentence of one segment needs."""
+
 
 def describe(
     seen: Observation | Capture | Path | str,
@@ -74,7 +77,7 @@ def segment_sentence(
         ),
         others=(),
         links=(replace(owner, segments=(replace(segment, index=0),)),),
-        facts=tuple(one for one in seen.facts if isinstance(one, Touching | Moving | OfAgent)),
+        facts=tuple(one for one in seen.facts if type(one) in SPOKEN),
         joint=(),
         relations=(),
         notices=(),

@@ -136,7 +136,7 @@ def _examples(
 def _shown(
     links: Sequence[ObservedLink], segment: Segment, name: str
 ) -> Iterator[tuple[ObservedLink, Segment]]:
-    """The segment itself, and the likest other one far enough from each of that name."""
+    """The segment itself, and the likest other one, if possible far from each of that name."""
     (own,) = [each for each in links if each.ee == segment.ee]
     (same,) = [each for each in own.segments if each.first == segment.first]
     yield own, same
@@ -145,9 +145,9 @@ def _shown(
         for at, each in enumerate(own.segments)
         if all(one.name != name for one in own.segments[max(at - 1, 0) : at + 2])
     ]
-    if far:
-        likest = max(far, key=lambda each: (each.name == segment.name, each.known, -each.index))
-        yield own, likest
+    others = far or [each for each in own.segments if each.name != name]
+    if others:
+        yield own, max(others, key=lambda e: (e.name == segment.name, e.known, -e.index))
 
 
 def _free(name: str, general: str, rules: Profile) -> None:

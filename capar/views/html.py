@@ -64,7 +64,8 @@ def conditions(found: Iterable[Condition]) -> str:
         for one in condition.measures:
             colour = GOOD if one.holds else BAD
             cells = (one.label, one.value_text, one.limit_text)
-            styles = (f"{DIM};padding-left:14px", f"color:{colour};white-space:nowrap", DIM)
+            narrow = "white-space:nowrap"
+            styles = f"{DIM};padding-left:14px", f"color:{colour};{narrow}", f"{DIM};{narrow}"
             rows.append(
                 "<tr>"
                 + "".join(

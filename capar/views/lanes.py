@@ -24,7 +24,7 @@ LABELS_PX = 128
 """Room for the names of lanes at the left [px]."""
 
 AXIS_PX = 18
-LETTER_PX = 6.3
+LETTER_PX = 6.9
 """Usual width of a letter [px]."""
 
 MOST_POINTS = 400

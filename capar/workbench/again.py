@@ -81,7 +81,7 @@ class Again(Panel):
             self._folder = gui.add_text("new folder", "performed")
             self._saved = self.button("Save the capture", lambda: self.save(self._folder.value))
             self._form = gui.add_dropdown("motion as", list(EXPORTS))
-            self.button("Export the motion", self._export, self._saved)
+            self.button("Export the motion", self.export, self._saved)
 
     def captured(self) -> None:
         """Forget handles of another capture."""
@@ -170,12 +170,9 @@ class Again(Panel):
         )
         return f"saved as {self.window.folders.named(folder)}"
 
-    def _export(self) -> str:
-        return self.export(self._folder.value, self._form.value)
-
-    def export(self, name: str, form: str) -> str:
+    def export(self) -> str:
         """Write the motion of the body to a file of another format."""
-        made = self._need()
+        made, name, form = self._need(), self._folder.value, self._form.value
         path = self.window.folders.new(f"{name}{EXPORTS[form]}")
         motion = made.done.motion
         plan = motion.plan

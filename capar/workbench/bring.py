@@ -67,7 +67,9 @@ class Bring(Panel):
                 "Draft its capture.toml", lambda: self.draft(self._file.value)
             )
             self.button("Look for files again", self.captured, self._file_said, color="gray")
-            upload.on_upload(guard(self._file_said, lambda: self._upload(upload.value)))
+            upload.on_upload(
+                guard(self._file_said, lambda: self.upload(upload.value.name, upload.value.content))
+            )
         with gui.add_folder("Draft"):
             self._hints = gui.add_html(html.note("Draft a file first."))
             self._entry = gui.add_dropdown("of", [GENERAL])
@@ -79,7 +81,7 @@ class Bring(Panel):
             for kind in ("object", "sensor"):
                 self.button(
                     f"Add it as {'an' if kind == 'object' else 'a'} {kind}",
-                    partial(self._add, kind),
+                    partial(self.add, kind),
                     self._hints,
                 )
             self.button(
@@ -110,9 +112,6 @@ class Bring(Panel):
         path = self.window.folders.inside(name)
         opened = self.window.open(str(path.parent if path.name == FILE else path))
         return f"{opened.trial.name} is open"
-
-    def _upload(self, file: Any) -> str:
-        return self.upload(file.name, file.content)
 
     def upload(self, name: str, content: bytes) -> str:
         """Keep a file that came from the browser in the first folder."""
@@ -230,18 +229,16 @@ class Bring(Panel):
                     field = self.gui.add_text(key, shown)
                 error = self.gui.add_html("")
                 self._fields[key], self._errors[key] = field, error
-                field.on_update(self.window.guard(error, partial(self._set, key)))
+                field.on_update(self.window.guard(error, partial(self.set, key)))
 
     def _chosen(self) -> tuple[str, int]:
         kind, _, rest = self._entry.value.partition(" ")
         return (kind, int(rest.partition(":")[0]) - 1) if rest else (GENERAL, 0)
 
-    def _set(self, key: str) -> str:
-        return self.set(key, self._fields[key].value)
-
-    def set(self, key: str, value: str) -> str:
-        """Set a key of the chosen table; the scene shows what comes of it."""
+    def set(self, key: str) -> str:
+        """Set a key of the chosen table to what its field says; the scene shows the result."""
         self._need()
+        value = self._fields[key].value
         kind, number = self._chosen()
         given: Any = None
         if value.strip() and value != NONE:
@@ -253,12 +250,10 @@ class Bring(Panel):
         self._show(self.read())
         return ""
 
-    def _add(self, kind: str) -> str:
-        return self.add(kind, self._body.value)
-
-    def add(self, kind: str, body: str) -> str:
+    def add(self, kind: str) -> str:
         """Make a body of the file a sensor or an object."""
         self._need()
+        body = self._body.value
         if body == NONE:
             raise CaparError("choose a body of the file first")
         name = constant_name(body)

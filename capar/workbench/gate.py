@@ -146,5 +146,5 @@ def stop(server: viser.ViserServer) -> None:
 
 
 def address(server: viser.ViserServer, gate: Gate) -> str:
-    """Where the window is."""
-    return f"http://{LOOPBACK}:{server.get_port()}/{gate.token}/"
+    """Where the window is; sizes that a page reports are in its own pixels, not in the screen's."""
+    return f"http://{LOOPBACK}:{server.get_port()}/{gate.token}/?fixedDpr=1"

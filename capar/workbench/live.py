@@ -63,7 +63,9 @@ class Live(Panel):
                 f"say the address of the tracker, such as {next(iter(EXAMPLES.values()))}"
             )
         simulated = self._source.value == SIMULATED
-        trial = replace(rig.trial, name=self._free_name(), sources=(), notices=())
+        names = {each.trial.name for each in window.captures}
+        name = next(f"live_{n}" for n in range(1, 999) if f"live_{n}" not in names)
+        trial = replace(rig.trial, name=name, sources=(), notices=())
         known = None
         if seconds <= 0.0 and rig.seen is not None:
             known = rig.seen.measures.measurements.calibration
@@ -82,10 +84,6 @@ class Live(Panel):
 
         window.jobs.start("live", work, self._finish, self._failed)
         return "started"
-
-    def _free_name(self) -> str:
-        names = {each.trial.name for each in self.window.captures}
-        return next(f"live_{n}" for n in range(1, 999) if f"live_{n}" not in names)
 
     def _observe(
         self,

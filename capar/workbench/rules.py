@@ -64,8 +64,8 @@ class Rules(Panel):
             self.text = gui.add_text("text", NOTHING_THERE, multiline=True)
             self._over = gui.add_dropdown("precedes", [OVER, "all"])
             self._said = gui.add_html("")
-            self.button("Check it", self.check, self._said)
-            self.button("What would it change?", self.effect, self._said)
+            self.button("Check it", self.check, self._said, work="checking the rule")
+            self.button("What would it change?", self.effect, self._said, work="trying the rule")
             self.button("Keep it", self.keep, self._said, color="green")
             self.button("Undo", self.undo, self._said, color="gray")
             self._changes = gui.add_html("")
@@ -74,7 +74,9 @@ class Rules(Panel):
             self._rule.on_update(guard(None, self._show_rule))
             self._rules_said = gui.add_html("")
             self.button("Take its text above", self._edit, self._rules_said)
-            self.button("Remove it", self._remove, self._rules_said, color="red")
+            self.button(
+                "Remove it", lambda: self.remove(self._rule.value), self._rules_said, color="red"
+            )
             self._rule_text = gui.add_html("")
         with gui.add_folder("Words of rules", expand_by_default=False):
             self._word = gui.add_text("word", "", hint="Such as carried_off; empty lists all.")
@@ -152,7 +154,10 @@ class Rules(Panel):
             names = introduced(path)
             if not names:
                 raise RuleError('the text introduces no primitive: it states no primitive("Name").')
-            yield path.rename(path.with_name(f"{_stem(names[0])}.lp"))
+            try:
+                yield path.rename(path.with_name(f"{_stem(names[0])}.lp"))
+            except CaparError as error:
+                raise RuleError(str(error).replace(f"{folder}/", "")) from None
 
     def _others(self, path: Path | None = None) -> tuple[Path, ...]:
         """The rule files that people wrote, without one of that name."""
@@ -164,9 +169,9 @@ class Rules(Panel):
         """Say what is wrong with the text; nothing of it is run."""
         with self._file() as path:
             found = check(path, profile=self.window.settings.profile, beside=self._others(path))
-            lines = "\n".join(str(each).replace(str(path), path.name) for each in found)
-        if errors(found):
-            raise RuleError(lines)
+            lines = "\n".join(map(str, found)).replace(f"{path.parent}/", "")
+            if errors(found):
+                raise RuleError(lines)
         return lines or "nothing is wrong"
 
     def effect(self) -> str:
@@ -283,9 +288,6 @@ class Rules(Panel):
         found = rule_of(self.window.settings.rule_base(), self._rule.value)
         self.text.value = Path(found.file).read_text("utf-8")
         return "its text is above; under the same name it counts only after the old one is removed"
-
-    def _remove(self) -> str:
-        return self.remove(self._rule.value)
 
     def remove(self, name: str) -> str:
         """Take a rule of the user's away; one that ships stays."""

@@ -27,7 +27,7 @@ from capar.views.viewer.stage import (
 Rgb = tuple[int, int, int]
 
 LIT: Rgb = (232, 89, 12)
-SIGHT: Rgb = (112, 72, 232)
+SIGHT: Rgb = (134, 100, 250)
 PLAIN_TRAIL: Rgb = (140, 140, 140)
 POINT_M = 0.015
 """Radius of a body without a surface [m]."""
@@ -239,10 +239,6 @@ class StagedCapture:
             return min(max(at, 0), len(times) - 1)
         return at if times[at] - time_s < time_s - times[at - 1] else at - 1
 
-    def view(self) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
-        """From where, and at which place, everything is seen [m]."""
-        low, high = world_bounds(self.stage)
-        middle = (low + high) / 2.0 + np.array(self._root.position)
-        far = max(float(np.linalg.norm(high - low)), 0.6) * 1.35
-        towards = np.array([0.9, -1.1, 0.6])
-        return middle + far * towards / np.linalg.norm(towards), middle
+    def bounds(self) -> Float[np.ndarray, "2 3"]:
+        """Lowest and highest place where anything small is in the scene [m]."""
+        return world_bounds(self.stage) + np.array(self._root.position)

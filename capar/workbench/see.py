@@ -19,7 +19,8 @@ NOBODY = "nothing"
 NONE = "(none)"
 KEYS = (
     "Keys: space plays, J and L step a frame, P and N go to the previous and next segment, O loops "
-    "over the segment, F follows its hand, H shows everything."
+    "over the segment, F follows its hand, H shows everything. While a field has the focus, keys "
+    "are letters: click into the scene first."
 )
 
 
@@ -72,26 +73,18 @@ class See(Panel):
             self._notices.content = ""
             return
         self._capture.value = self._names[window.captures.index(opened)]
-        segments = opened.observation.segments if opened.observation else ()
-        self._segment.options = [
-            NONE,
-            *(
-                f"{SegmentAddress(each.ee, each.index)}  {each.name}  {each.start_s:.2f} s"
-                for each in segments
-            ),
+        seen = opened.observation
+        self._segment.options = [NONE] + [
+            f"{SegmentAddress(each.ee, each.index)}  {each.name}  {each.start_s:.2f} s"
+            for each in (seen.segments if seen else ())
         ]
         self._segment.value = NONE
         self._follow.options = [NOBODY, *opened.trial.bodies]
         self._follow.value = NOBODY
         self._set_shown()
-        notices = (
-            *opened.trial.notices,
-            *(opened.observation.notices if opened.observation else ()),
-        )
-        lines = note_lines(dict.fromkeys(notices))
+        lines = note_lines(dict.fromkeys((*opened.trial.notices, *(seen.notices if seen else ()))))
         self._notices.content = html.text("\n".join(lines) or "none")
-        told = describe(opened.observation) if opened.observation else "Being observed."
-        self._story.content = html.text(told)
+        self._story.content = html.text(describe(seen) if seen else "Not observed yet.")
 
     def chosen(self) -> None:
         """Show which segment is chosen."""

@@ -82,7 +82,13 @@ class Why(Panel):
             return seen.explain([segment])[0]
 
         name = str(SegmentAddress(segment.ee, segment.index))
-        self.window.work(f"explaining {name}", self._said, work, lambda e: self.show(seen, e))
+
+        def done(told: Explanation) -> None:
+            self.show(seen, told, segment)
+            if self.window.segment not in (None, segment):  # another was chosen in the meantime
+                self.chosen()
+
+        self.window.work(f"explaining {name}", self._said, work, done)
         return ""
 
     def _segment(self) -> Segment:
@@ -90,7 +96,7 @@ class Why(Panel):
             raise CaparError(f"no segment is chosen. {ASK}")
         return self.window.segment
 
-    def show(self, seen: Explained, told: Explanation) -> None:
+    def show(self, seen: Explained, told: Explanation, segment: Segment) -> None:
         """Show an explanation."""
         self._told = seen, told
         head, summary, *more = explanation_lines(told, seen.observation)
@@ -107,7 +113,6 @@ class Why(Panel):
         )
         definitions = seen.definitions(told).items()
         notes = (*told.notes, *(f"{name}: {text}" for name, text in definitions))
-        segment = self._segment()
         reservations = reservation_lines(
             notices_about([segment], seen.observation, [told]),
             called=seen.explainer.names, unshaped=seen.unshaped,
@@ -147,15 +152,10 @@ class Why(Panel):
     def _ask_not(self) -> None:
         if self._other.value == CHOOSE:
             raise CaparError("choose another name first")
-        self._not.content = self.not_text(self._other.value)
-
-    def not_text(self, name: str) -> str:
-        """What the nearest rule for another name lacks in the chosen segment, as HTML."""
-        _, seen = self.window.need()
+        name, seen = self._other.value, self.window.need()[1]
         near = seen.why_not(self._segment(), name)
-        if not near:
-            return html.text(f"No rule for {name} comes near: each lacks several conditions.")
-        return "".join(
+        nothing = html.text(f"No rule for {name} comes near: each lacks several conditions.")
+        self._not.content = nothing * (not near) + "".join(
             html.text(f"Nearest rule: {rule.rule} lacks") + html.conditions(rule.failing)
             if rule.failing
             else html.text(rule.sentence)

@@ -15,11 +15,12 @@ from capar.model.errors import CaparError, UnknownNameError
 from capar.model.observation import Observation, Segment, SegmentAddress, find_segment
 from capar.pipelines.explanation import Explained, explained
 from capar.pipelines.language import segment_sentence
+from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.views import html
 from capar.views.lanes import Lanes, colour_of
 from capar.views.lettering import Span
 from capar.views.picture import Row, kind_of, rows, spoken
-from capar.views.viewer.stage import Stage, stage
+from capar.views.viewer.stage import Stage, stage, world_bounds
 from capar.workbench.folders import Folders
 from capar.workbench.gate import Gate, address, guarded_server, stop
 from capar.workbench.jobs import Jobs, problem
@@ -29,17 +30,23 @@ from capar_rules.engine.profiles import Profile
 from capar_rules.engine.profiles import profile as shipped
 from capar_rules.lint.checking import admitted_profile
 from extractors.readers.bundle.capture_toml import find_place, read_capture
+from kb.lexicon.links import PrimitiveWords
 
 TICK_S = 1.0 / 40.0
 SLIDER_S = 0.1
 """While it plays, the slider follows so often [s]: it is slower to draw than the scene."""
 
 PANEL_PX = 400
-LEAST_PX = 420
+LEAST_PX, LANES_PX = 420, 325
+"""The time line is at least so wide; in a low window it is so high, or half of it [px]."""
+
 LONGEST_S = 24.0
 """A longer capture is shown in the lanes by pages of this length [s]."""
 
-BESIDE_M = 1.5
+TOWARDS = np.array([0.9, -1.1, 0.6])
+"""Where the camera looks from: in front of the performer, to the right and above."""
+
+APART_M = 0.9
 """Captures stand so far from each other in the scene [m]."""
 
 
@@ -54,6 +61,7 @@ class OpenCapture:
     """What was understood of it; None until it is observed."""
 
     rows: tuple[Row, ...] = ()
+    words: tuple[PrimitiveWords, ...] = ()
     sentences: dict[tuple[str, int], str] = field(default_factory=dict)
 
     @property
@@ -95,12 +103,23 @@ class Panel:
         """Add the controls, inside of the panel's tab."""
 
     def button(
-        self, label: str, act: Callable[[], str | None], where: Any = None, **look: Any
-    ) -> Any:
-        """Add a button, and below it, if no place is given, one for what comes of it."""
+        self, label: str, act: Callable[[], str | None], where: Any = None, *, work: str = "",
+        **look: Any,
+    ) -> Any:  # fmt: skip
+        """Add a button, and below it, if no place is given, one for what comes of it.
+
+        What takes long is named by ``work``, and done in the background.
+        """
         made = self.gui.add_button(label, **look)
         place = where or self.gui.add_html("")
-        made.on_click(self.window.guard(place, act))
+
+        def done(said: str) -> None:
+            place.content = html.message(said, good=True)
+
+        def begin() -> None:
+            self.window.work(work, place, lambda report: act(), done)
+
+        made.on_click(self.window.guard(place, begin if work else act))
         return place
 
     def captured(self) -> None:
@@ -130,6 +149,7 @@ class Window:
         self.segment: Segment | None = None
         self.time_s, self.speed = 0.0, 1.0
         self.playing, self.looping, self.following = False, False, ""
+        self._waits = False
         self.lock = threading.RLock()
         self.jobs = Jobs(self._show_job)
         self.updates = 0
@@ -194,10 +214,11 @@ class Window:
         """Put a capture into the scene, beside those that are there, and look at it."""
         with self.lock, self.server.atomic():
             number = max((int(c.shown._path[2:]) for c in self.captures), default=-1) + 1
-            beside = BESIDE_M * len(self.captures)
-            shown = StagedCapture(
-                self.server, f"/c{number}", staged or stage(trial), beside_m=beside
-            )
+            staged, beside = staged or stage(trial), 0.0
+            if self.captures:
+                right = max(float(each.shown.bounds()[1][0]) for each in self.captures)
+                beside = right + APART_M - float(world_bounds(staged)[0][0])
+            shown = StagedCapture(self.server, f"/c{number}", staged, beside_m=beside)
             opened = OpenCapture(place, trial, shown)
             self.captures.append(opened)
             self._activate(opened)
@@ -244,7 +265,8 @@ class Window:
     def observe(self) -> None:
         """Observe every open capture that is not yet, in the background."""
         waiting = [each for each in self.captures if each.seen is None]
-        if not waiting or self.jobs.running:
+        self._waits = bool(waiting and self.jobs.running)  # until that is done
+        if not waiting or self._waits:
             return
         names = ", ".join(each.trial.name for each in waiting)
 
@@ -273,6 +295,7 @@ class Window:
         lost = {name: b.lost for name, b in seen.measures.measurements.bodies.poses.items()}
         with self.lock, self.server.atomic():
             opened.seen = seen
+            opened.words = primitive_words(primitive_files(self.settings.rule_base().added))
             opened.sentences.clear()
             opened.rows = rows(seen.observation, speeds, lost)
             opened.shown.find(seen.observation)
@@ -315,7 +338,7 @@ class Window:
         """Play, or stop where it is; from the beginning where it had come to the end."""
         if not self.playing and self.time_s >= self._range()[1] - 1e-6:
             self.seek(self._range()[0])
-        self.playing = not self.playing
+        self.playing, self._shown_s = not self.playing, -1.0  # the slider catches up
 
     def _range(self) -> tuple[float, float]:
         if self.looping and self.segment is not None:
@@ -373,7 +396,7 @@ class Window:
 
     def _run(self) -> None:
         before = time.monotonic()
-        while not self._ended.wait(TICK_S):
+        while not self._ended.wait(max(before + TICK_S - time.monotonic(), 0.002)):
             now = time.monotonic()
             try:
                 self._tick(now - before)
@@ -393,6 +416,8 @@ class Window:
                 self.time_s = max(moved, first)
             if self.time_s != self._shown_s:
                 self._show_now()
+        if self._waits and not self.jobs.running:
+            self.observe()
 
     def _show_now(self) -> None:
         before, self._shown_s = self._shown_s, self.time_s
@@ -418,10 +443,6 @@ class Window:
         """Tell of what went wrong at the top of the window."""
         self._message.content = html.message(words)
 
-    def inform(self, words: str) -> None:
-        """Tell of what went well at the top of the window."""
-        self._message.content = html.message(words, good=True)
-
     def guard(
         self, where: "viser.GuiHtmlHandle | None", action: Callable[[], str | None]
     ) -> Callable[[Any], None]:
@@ -434,8 +455,10 @@ class Window:
         def call(event: Any) -> None:
             if event.client_id is None:
                 return
+            place.content = ""  # first: work that the action begins may end before it returns
             try:
-                place.content = html.message(action() or "", good=True)
+                if said := action():
+                    place.content = html.message(said, good=True)
             except Exception as error:
                 place.content = html.message(problem(error))
 
@@ -536,20 +559,19 @@ class Window:
             command = self.server.gui.add_command(label, hotkey=key)
             command.on_trigger(self.guard(None, action))
 
-    def look_at_all(self) -> None:
-        """Put the camera where everything of the capture that is looked at is seen."""
+    def look_at_all(self, *clients: viser.ClientHandle) -> None:
+        """Put the camera, of some windows or all, where everything that is open is seen."""
         if self.active is None:
             return
-        ends = [each.shown.view() for each in self.captures]
-        place = np.mean([end for _, end in ends], axis=0)
-        far = max(float(np.linalg.norm(eye - at)) for eye, at in ends)
-        far += BESIDE_M * (len(ends) - 1) * 0.8
-        eye, at = self.active.shown.view()
-        place = place - np.array([0.0, 0.0, 0.16 * far])  # the timeline covers the lower part
-        eye = place + (eye - at) / np.linalg.norm(eye - at) * far
+        lows, highs = zip(*(each.shown.bounds() for each in self.captures), strict=True)
+        low, high = np.min(lows, axis=0), np.max(highs, axis=0)
+        covered = self._lanes_px() / self._size[1]  # by the timeline, at the bottom
+        far = max(float(np.linalg.norm(high - low)), 0.6) * 0.8 / (1.0 - covered)
+        place = (low + high) / 2.0 - np.array([0.0, 0.0, 0.45 * covered * far])
+        eye = place + far * TOWARDS / np.linalg.norm(TOWARDS)
         self.server.initial_camera.position = eye
         self.server.initial_camera.look_at = place
-        for client in self.server.get_clients().values():
+        for client in clients or self.server.get_clients().values():
             with client.atomic():
                 client.camera.position = eye
                 client.camera.look_at = place
@@ -563,12 +585,17 @@ class Window:
                 if size != self._size and min(size) > 0:
                     self._size = size
                     wide = max(size[0] - 24, LEAST_PX)
-                    self._panel.float(x=12, y=-12, width=wide, height=max(size[1] * 0.36, 220))
+                    self._panel.float(x=12, y=-12, width=wide, height=self._lanes_px())
                     self._draw_lanes()
 
         client.camera.on_update(fit)
         fit(client.camera)
+        self.look_at_all(client)
         self._shown_s = -1.0
+
+    def _lanes_px(self) -> float:
+        """Height of the timeline."""
+        return min(max(self._size[1] * 0.36, LANES_PX), self._size[1] * 0.5)
 
     def _draw_lanes(self) -> None:
         opened, chosen = self.active, None
@@ -577,7 +604,7 @@ class Window:
             chosen = name, self.segment.start_s, self.segment.end_s
         if opened is None or not opened.rows:
             self._lanes, self._cursor.content = None, ""
-            waits = "" if opened is None else f"{opened.trial.name} is being observed."
+            waits = "" if opened is None else f"{opened.trial.name} is not observed yet."
             self._drawing.content = html.note(waits or "Open a capture in the tab File.")
             return
         begin, end = self._page()
@@ -610,17 +637,14 @@ class Window:
             if segment.start_s <= self.time_s < segment.end_s or (
                 self.time_s == segment.end_s == opened.seen.observation.duration_s
             ):
-                said = self.sentence(opened, segment)
+                key = segment.ee, segment.index
+                if key not in opened.sentences:
+                    said = segment_sentence(opened.seen.observation, segment, words=opened.words)
+                    opened.sentences[key] = said
+                said = opened.sentences[key]
                 head = f"{spoken(segment.ee)}: {segment.name}"
                 parts.append(html.text(f"{head}. {said}" if said else head))
         return "".join(parts)
-
-    def sentence(self, opened: OpenCapture, segment: Segment) -> str:
-        """What is done in a segment, in plain English; empty where nothing is touched."""
-        key = segment.ee, segment.index
-        if key not in opened.sentences and opened.observation is not None:
-            opened.sentences[key] = segment_sentence(opened.observation, segment)
-        return opened.sentences.get(key, "")
 
     def _show_job(self, what: str, share: float) -> None:
         on = bool(what)

@@ -120,8 +120,13 @@ def excerpt(
     """
     at = link.segments.index(segment)
     naming = _naming_rules(rules)
+    called = [each.name == name for each in link.segments]
+    low, high = 0, len(called)
+    if segment.name != name:  # a counter-example ends where one of that name begins
+        low = max((n + 1 for n in range(at) if called[n]), default=0)
+        high = next((n for n in range(at, high) if called[n]), high)
     for margin in (MARGIN, 2 * MARGIN, len(link.segments)):
-        near = link.segments[max(at - margin, 0) : at + margin + 1]
+        near = link.segments[max(at - margin, low) : min(at + margin + 1, high)]
         wanted = sum(each.name == name for each in near)
         cut = tuple(_cut(facts, link.ee, near[0].first, near[-1].last))
 
