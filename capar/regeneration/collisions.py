@@ -109,7 +109,7 @@ class Surroundings:
         for row in np.flatnonzero(self.at_least(self.watched) < within_m):
             geom, name = self.pairs[row]
             if wanted is None or self.parts[geom] in wanted:
-                found = self.gap(geom, name)
+                found = self.gap(geom, name, within_m)
                 if found < within_m:
                     out.append(Pair(found, self.parts[geom], name))
         return out
@@ -133,14 +133,14 @@ class Surroundings:
         found = self._distance(geom, self.geoms[name])
         return max(found, self._apart(geom, name, most_m)) if found < 0.0 else found
 
-    def slope(self, geom: int, name: str) -> Float[np.ndarray, "dofs"]:
-        """How that distance changes with the body's joints."""
+    def slope(self, geom: int, name: str, most_m: float = NEAR_M) -> Float[np.ndarray, "dofs"]:
+        """How that distance, which is not larger [m], changes with the body's joints."""
         mujoco.mj_comPos(self.model, self.data)
         ends = np.zeros(6)
         found = mujoco.mj_geomDistance(self.model, self.data, geom, self.geoms[name], NEAR_M, ends)
         spot, normal = ends[:3], (ends[3:] - ends[:3]) * np.sign(found)
-        if found < 0.0 and self._apart(geom, name, NEAR_M) >= found:
-            spot, normal = self._nearest(geom, name)
+        if found < 0.0 and self._apart(geom, name, most_m) >= found:
+            spot, normal = self._nearest(geom, name, most_m)
         moves = np.empty((3, self.model.nv))
         mujoco.mj_jac(self.model, self.data, moves, None, spot, self.model.geom_bodyid[geom])
         return np.asarray(-normal / max(float(np.linalg.norm(normal)), 1e-12) @ moves)
@@ -182,10 +182,10 @@ class Surroundings:
         return float(_depths(points, self.model, geom).min())
 
     def _nearest(
-        self, geom: int, name: str
+        self, geom: int, name: str, most_m: float
     ) -> tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"]]:
         """The point of a hollow object's surface next to a part, and the way out to it [m, 1]."""
-        local = self._surface(geom, name, NEAR_M)
+        local = self._surface(geom, name, most_m)
         point = local[int(_depths(local, self.model, geom).argmin())]
         steps = point + DIFFERENCE_M * np.concatenate([np.eye(3), -np.eye(3)])
         ahead, back = _depths(steps, self.model, geom).reshape(2, 3)
@@ -299,7 +299,7 @@ class ClearTask(mink.Task):
         self._measure(configuration)
         self.slopes[:] = 0.0
         for row in np.flatnonzero(self.gaps < self.clear_m) if self.active else ():
-            self.slopes[row] = self.around.slope(*self.pairs[row])
+            self.slopes[row] = self.around.slope(*self.pairs[row], HEAD_CLEAR_M)
         return self.slopes
 
     def _measure(self, configuration: mink.Configuration) -> None:
