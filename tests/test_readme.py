@@ -2,12 +2,17 @@
 
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import typer
 from commands import capar, clean_environment
+from robot_data import robot_data
+
+from capar.cli import app
 
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
@@ -32,6 +37,14 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     (tmp_path / "tests").symlink_to(ROOT / "tests")
     (tmp_path / "mine").mkdir()
+    for place, takes in (("study", '["s1", "s2"]'), ("demos/d", ""), ("more_m", ""),
+                         ("robot", '["episode_0", "episode_3"]')):  # fmt: skip
+        shutil.copytree(ROOT / "capar" / "demo" / "drink_from_mug", tmp_path / place)
+        toml = tmp_path / place / "capture.toml"
+        name = Path(place).name
+        text = toml.read_text().replace('"drink_from_mug"', f'"{name}"', 1)
+        toml.write_text(f"takes = {takes}\n{text}" if takes else text)
+    robot_data(tmp_path / "robot_data")
     return tmp_path
 
 
@@ -43,6 +56,16 @@ def test_every_command_of_a_page_runs(page: Path, folder: Path) -> None:
         assert name == "capar"
         done = capar(*arguments, cwd=folder)
         assert done.returncode == 0, f"{command}\n{done.stderr}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_what_a_page_shows_of_commands_that_wait_or_serve_is_taken_by_them(page: Path) -> None:
+    """They are run by tests of their own: of the window, of the server, of trackers."""
+    root = typer.main.get_command(app)
+    for line in re.findall(r"^    capar (.+)", page.read_text(), re.M):
+        name, *arguments = shlex.split(line, comments=True)
+        command = root.get_command(typer.Context(root), name)
+        command.make_context(name, arguments)
 
 
 @pytest.mark.long
