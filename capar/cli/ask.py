@@ -8,7 +8,7 @@ import typer
 from typer import Argument, Option
 
 from capar.cli.options import Corrected, Json, Place
-from capar.cli.output import answer, console
+from capar.cli.output import answer, print_table
 from capar.model.errors import CaparError, FileError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -136,9 +136,9 @@ def _print(found: "Answer", chosen: str) -> None:
     from kb.queries.questions import FORMATS, cells, header
 
     if chosen == "table" and sys.stdout.isatty():
-        from capar.views.tables import terminal_table
-
-        console().print(terminal_table(header(found), list(cells(found))))
+        shown = list(cells(found))
+        words = {n for n, own in enumerate(zip(*shown, strict=True)) if " " not in "".join(own)}
+        print_table(header(found), shown, names=words)
     else:
         typer.echo(FORMATS[chosen](found), nl=False)
 

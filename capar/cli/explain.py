@@ -50,8 +50,9 @@ def explain(
     base = rule_base(profile, rules, actionary, steady=steady)
     seen = explained(read_capture(capture), rules=base)
     observation = seen.observation
-    asked = chosen(observation, segment or "")
-    alone = "/" in (segment or "")
+    segment = (segment or "").removeprefix(f"{capture.rstrip('/')}/")  # as the capture was typed
+    asked = chosen(observation, segment)
+    alone = "/" in segment
     if why_not:
         _why_not(why_not, asked, seen, json=json, alone=alone)
         return

@@ -15,7 +15,7 @@ import typer
 from typer import Argument, Option
 
 from capar.cli import options
-from capar.cli.output import check_picture, console, save
+from capar.cli.output import check_picture, console, print_whole, save, stage
 from capar.model.errors import CaparError, FileError, RuleError
 
 if TYPE_CHECKING:
@@ -173,7 +173,8 @@ def observe(
     choice = on_unknown or (OnUnknown.ASK if options.can_ask() and not json else OnUnknown.KEEP)
     base = rule_base()
     trial, measurements, observe_by = _measured(capture, set_ or [], name, fit=fit, quiet=quiet)
-    observation = observe_by(base)
+    with stage("naming segments", quiet=quiet):
+        observation = observe_by(base)
     folder = new_rules_folder(rules, actionary=actionary)
     if choice is OnUnknown.ASK and _ask_for_names(observation, folder):
         observation = observe_by(rule_base())
@@ -193,21 +194,24 @@ def _measured(
     """A capture, what is measured of it, and what observes it by rules."""
     from extractors.readers.bundle.capture_toml import read_capture
 
-    trial = read_capture(capture)
+    with stage(f"reading {capture}", quiet=quiet):
+        trial = read_capture(capture)
     place = Path(capture)
     if place.is_file() and place.suffix != ".toml" and not quiet:
         typer.echo(f"{capture} is read as {place.parent / 'capture.toml'} says", err=True)
     if fit:
         from capar.body.body_fitting import fit_body, with_body_parts
 
-        trial = with_body_parts(trial, fit_body(capture, trial))
+        with stage("fitting a body", quiet=quiet):
+            trial = with_body_parts(trial, fit_body(capture, trial))
 
     # A mistake in the capture is reported before these are loaded, which takes longer.
     from capar.pipelines.observation import observe_measured
     from extractors.calibration import calibrate, set_values
     from extractors.measure import measure
 
-    measured = measure(trial, set_values(calibrate(trial), settings) if settings else None)
+    with stage(f"measuring {len(trial.times)} frames", quiet=quiet):
+        measured = measure(trial, set_values(calibrate(trial), settings) if settings else None)
     return trial, measured, lambda base: observe_measured(trial, measured, rules=base, name=name)
 
 
@@ -340,7 +344,7 @@ def _tables(observation: "Observation", *, quiet: bool) -> None:
 
     if sys.stdout.isatty():
         table = segments_table(observation, width=console().width)
-        console().print(table, steps_table(observation.complex_par))
+        print_whole(table, steps_table(observation.complex_par))
     else:
         for rows in (segment_rows(observation), step_rows(observation.complex_par)):
             typer.echo("\n".join(aligned(rows)) + "\n")

@@ -3,6 +3,7 @@
 import dataclasses
 import errno
 import os
+import signal
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -18,6 +19,7 @@ from capar.model.figures import figure
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.table import Table
 
 
 PERMISSION = "Get permission to read or write it, or name another path."
@@ -146,7 +148,25 @@ def print_table(
     table.caption = escape(caption) or None
     for index in sections:
         table.rows[index].end_section = True
-    console().print(table)
+    print_whole(table)
+
+
+def print_whole(*tables: "Table") -> None:
+    """Tables on standard output, never so narrow that a word is broken: ids can be copied.
+
+    Those for which the terminal is too narrow have no lines between their columns.
+    """
+    from rich.box import SIMPLE_HEAD
+    from rich.measure import Measurement
+
+    own = console()
+    wide = own.options.update(width=PIPE_COLUMNS)
+    for table in tables:
+        if Measurement.get(own, wide, table).minimum > own.width:
+            table.box, table.collapse_padding, table.pad_edge = SIMPLE_HEAD, True, False
+    least = (Measurement.get(own, wide, table).minimum for table in tables)
+    own.width = max(own.width, *least)
+    own.print(*tables)
 
 
 def emit(text: str, output: Path | None) -> None:
@@ -222,6 +242,30 @@ def progress(doing: str) -> "Callable[[Sequence[Any]], Iterable[Any]]":
         return track(steps, description=doing, console=Console(stderr=True), transient=True)
 
     return tracked
+
+
+STAGE_S = 1.0
+"""What takes longer than this is said while it runs [s]."""
+
+
+@contextmanager
+def stage(doing: str, *, quiet: bool = False) -> Iterator[None]:
+    """Says on standard error what is done, if that is a terminal and it takes over a second."""
+    if quiet or not sys.stderr.isatty():
+        yield
+        return
+
+    def say(*_: object) -> None:
+        typer.echo(f"{doing} ...", err=True, nl=False)
+
+    before = signal.signal(signal.SIGALRM, say)  # not a thread: measuring may fork
+    signal.setitimer(signal.ITIMER_REAL, STAGE_S)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+        typer.echo("\r\x1b[K", err=True, nl=False)
 
 
 def check_writable(path: Path, *, suffixes: Collection[str] = ()) -> None:

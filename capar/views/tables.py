@@ -66,7 +66,7 @@ def segments_table(observation: Observation, *, width: int = NARROW) -> "Table":
     shown = [n for n, name in enumerate(SEGMENT_COLUMNS) if width >= NARROW or name != "features"]
     rows = [[row[n] for n in shown] for row in segment_rows(observation)]
     short = all(each.known for each in observation.segments)  # else a name has remarks beside it
-    names = {0, 3} if short and width < NARROW else {0}
+    names = {0, 3, 5} if short and width < NARROW else {0}
     table = terminal_table(
         rows[0], rows[1:], right={1, 2}, names=names, title=observation.capture, empty=True
     )
@@ -77,9 +77,6 @@ def segments_table(observation: Observation, *, width: int = NARROW) -> "Table":
             cells = _segment_row(link, segment)
             table.add_row(*(_escaped(cells[n]) for n in shown), style=style)
         table.add_section()
-    addresses = table.columns[0]
-    addresses.no_wrap = True
-    addresses.min_width = max(map(len, map(str, addresses.cells)))
     return table
 
 
@@ -87,7 +84,9 @@ def steps_table(par: ComplexPar) -> "Table":
     """Steps of a complex PAR for a terminal, with their shares of its duration."""
     title = f"{par.name or 'unnamed'}({', '.join(par.objects)}), {par.duration_s:.2f} s"
     rows = step_rows(par)[1:]
-    table = terminal_table(STEP_COLUMNS, rows, right={4, 5, 6}, names={0}, title=title, empty=True)
+    table = terminal_table(
+        STEP_COLUMNS, rows, right={4, 5, 6}, names={0, 1, 3}, title=title, empty=True
+    )
     for link in par.links:
         for step in link.steps:
             table.add_row(*map(_escaped, _step_row(step, par.duration_s)))
@@ -229,6 +228,7 @@ def terminal_table(
             _escaped(column),
             justify="right" if index in right else "left",
             min_width=whole,
+            no_wrap=index in names,
             overflow="fold",
         )
     for row in () if empty else rows:

@@ -452,11 +452,16 @@ def _post(url: str, text: str, kind: str) -> tuple[str, bytes]:
         said = error.read().decode(errors="replace").strip()
         if error.code == 400 or "custom function" in said:
             raise QueryError(said) from None
+        if error.code in {404, 405} and url.endswith("/update"):
+            raise StoreError(
+                f"{url.rpartition('/')[0]}: takes no SPARQL updates (`capar serve` does not); write "
+                "to the Actionary's folder, or to a server such as `oxigraph serve`"
+            ) from None
         raise StoreError(f"{url} refuses: {error.code} {error.reason} {said}".strip()) from None
     except (URLError, OSError) as error:
         reason = getattr(error, "reason", error)
         raise StoreError(
-            f"{url}: no server answers ({reason}); start a server there, for example "
+            f"{url.rpartition('/')[0]}: no server answers ({reason}); start one there, for example "
             "`oxigraph serve --location FOLDER --bind 127.0.0.1:7878`"
         ) from None
 

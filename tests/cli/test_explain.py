@@ -7,7 +7,7 @@ from pathlib import Path
 import motions
 import pytest
 from bundles import DRINKING
-from shell import run
+from shell import refused, run
 from write_demo import write_tables
 
 THESIS = ["--profile", "thesis"]
@@ -161,3 +161,9 @@ def test_explain_tells_what_was_assumed_of_the_bodies_that_its_segment_is_about(
         codes = [[each["code"] for each in row["notices"]] for row in rows]
         assert ["stand-in-shape"] in codes
         assert not any("post" in str(row["notices"]) for row in rows)
+
+
+def test_a_segment_may_be_addressed_by_its_capture_as_that_was_typed() -> None:
+    short = run("explain", DRINKING, "right_hand/2")
+    assert run("explain", DRINKING, f"{DRINKING}/right_hand/2") == short
+    assert "no capture 'other'" in refused("explain", DRINKING, "other/right_hand/2")

@@ -26,7 +26,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from kb.actionary import Actionary
-from kb.errors import QueryError
+from kb.errors import QueryError, StoreError
 from kb.exchange import FORMATS, export, read
 from kb.queries.questions import questions
 from kb.serving import ActionaryServer, Service
@@ -379,3 +379,12 @@ def test_a_port_that_is_taken_is_told(served: str) -> None:
     port = int(served.rstrip("/").rpartition(":")[2])
     with pytest.raises(Exception, match="try another --port"):
         ActionaryServer(Service(str(Path())), port=port)
+
+
+def test_an_observation_cannot_be_added_by_updates_which_the_server_does_not_take(
+    served: str,
+) -> None:
+    with Actionary.open(served) as actionary:
+        assert [each.name for each in actionary.observations()] == ["DrinkFromMug"]
+        with pytest.raises(StoreError, match=r"takes no SPARQL updates.*folder, or to a server"):
+            actionary.add(with_unknown())

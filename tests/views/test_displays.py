@@ -4,14 +4,18 @@ import sys
 from base64 import b64decode
 from dataclasses import replace
 from html.parser import HTMLParser
+from io import StringIO
 from xml.etree import ElementTree
 
 import pandas as pd
 import pytest
 from observations import MUG, drink_from_mug, pick_up_with_both_hands
+from rich.console import Console
 
+from capar.cli import output
 from capar.model.errors import CaparError
 from capar.model.facts import Touching
+from capar.views.tables import segments_table
 
 
 class Page(HTMLParser):
@@ -75,3 +79,20 @@ def test_without_pandas_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(CaparError, match=r"pip install 'capar\[frames\]'"):
         drink_from_mug().to_frame()
+
+
+def test_at_80_columns_no_address_name_or_number_is_broken(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where such columns do not fit they are wider than the terminal, which then breaks lines."""
+    out = StringIO()
+    monkeypatch.setattr(output, "console", lambda: Console(width=80, file=out))
+    both = pick_up_with_both_hands()
+    output.print_whole(segments_table(both, width=80))
+    address = "a_study_of_tables:take_number_12/right_hand/17"
+    rows = [[address, "ResumePosture", "bottle table", "subject_12", "12.345", "13.456"]]
+    columns = ("address", "action", "objects", "performer", "begins", "ends")
+    output.print_table(columns, rows, names={0, 1, 3, 4, 5})
+    for link in both.links:
+        for each in link.segments:
+            assert f" {link.ee}/{each.index} " in out.getvalue()
+    for whole in (address, "ResumePosture", "subject_12", "12.345", "13.456"):
+        assert f" {whole} " in out.getvalue()
