@@ -454,7 +454,7 @@ def _post(url: str, text: str, kind: str) -> tuple[str, bytes]:
             raise QueryError(said) from None
         if error.code in {404, 405} and url.endswith("/update"):
             raise StoreError(
-                f"{url.rpartition('/')[0]}: takes no SPARQL updates (`capar serve` does not); write "
+                f"{url.rpartition('/')[0]}: takes no SPARQL updates, as `capar serve`; write "
                 "to the Actionary's folder, or to a server such as `oxigraph serve`"
             ) from None
         raise StoreError(f"{url} refuses: {error.code} {error.reason} {said}".strip()) from None
