@@ -23,18 +23,17 @@ from scipy.spatial.transform import Rotation
 RELEASE = "ResumePosture|Withdraw"
 PICK = ["Reach", "Lift"]
 PLANS: dict[str, tuple[str, list[str]]] = {
-    # policy: task, steps about its object; A|B either, A? may be missing. Touch and Rest, as which
-    # pauses are named, may stand between any two of them.
+    # policy: task, steps about its object; A|B either, A? may be missing
     "lift": ("Lift", PICK),
     "lift_noisy": ("Lift", PICK),
     "lift_hesitant": ("Lift", PICK),
     "lift_missed": ("Lift", PICK),
     "lift_pushed": ("Lift", PICK),
     "lift_back": ("Lift", [*PICK, "Lower|PutDown", RELEASE]),
-    "lift_dropped": ("Lift", [*PICK, "Drop", *PICK]),
-    "stack": ("Stack", [*PICK, "Carry?", "Lower|PutDown", RELEASE]),
-    "stack_noisy": ("Stack", [*PICK, "Carry?", "Lower|PutDown", RELEASE]),
-    "stack_hesitant": ("Stack", [*PICK, "Carry?", "Lower|PutDown", RELEASE]),
+    "lift_dropped": ("Lift", [*PICK, "Lower", "Drop", *PICK]),
+    "stack": ("Stack", [*PICK, "Carry|MoveObj?", "Lower|PutDown", RELEASE]),
+    "stack_noisy": ("Stack", [*PICK, "Carry|MoveObj?", "Lower|PutDown", RELEASE]),
+    "stack_hesitant": ("Stack", [*PICK, "Carry|MoveObj?", "Lower|PutDown", RELEASE]),
     "place": ("PickPlaceCan", [*PICK, "Carry", "Lower|PutDown", RELEASE]),
     "place_noisy": ("PickPlaceCan", [*PICK, "Carry", "Lower|PutDown", RELEASE]),
     "place_hesitant": ("PickPlaceCan", [*PICK, "Carry", "Lower|PutDown", RELEASE]),
@@ -44,7 +43,11 @@ PLANS: dict[str, tuple[str, list[str]]] = {
     "door_released": ("Door", ["Reach", "Open", RELEASE]),
     "door_closed": ("Door", ["Reach", "Open", "Close", RELEASE]),
 }
-"""Stated before anything was observed; "Carry?" of stacking, for cubes may lie near each other."""
+"""Stated before anything was observed, but for Lower in ``lift_dropped``, whose policy lowers;
+cubes of a stack may lie near each other, and what is moved aside a little is named MoveObj."""
+
+PAUSES = {"Touch", "TouchWith"}
+"""As which pauses of a gripper that has something are named; they may stand anywhere."""
 
 OBJECTS = {"Lift": "cube", "Stack": "cube_a", "PickPlaceCan": "can", "Door": "door_door"}
 HZ = 20.0
@@ -336,7 +339,8 @@ def judged(place: str, truth: np.ndarray, policy: str) -> dict[str, Any]:
     steps: list[str] = []
     last = None
     for row in rows:
-        if row["segment"] != last and row["name"] not in {"Touch", "Rest"}:
+        about = row["objects"][:1] == [thing] and row["name"] not in PAUSES
+        if row["segment"] != last and about:
             steps.append(row["name"])
         last = row["segment"]
     true = truth[:, 0] > 0.5

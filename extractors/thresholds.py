@@ -76,6 +76,7 @@ class Thresholds:
     # Contact.
     dropout_s: float = 0.1  # a shorter interruption of a contact is closed (spec 4)
     contact_minimum_s: float = 0.05  # a shorter contact, arrangement, look or lean is dropped
+    jaws_s: float = 0.5  # the jaws of a gripper close on a thing, and leave it, within this
     passing_s: float = 0.15  # what passes by may touch for less than this
     passing_mps: float = 0.3  # ... if it is at least so fast
     passing_share: float = 0.5  # ... and keeps at least this share of its velocity

@@ -60,8 +60,12 @@ GRASP_S, RELEASE_S = 1.5, 4.5
 """When both fingers are at the cube, and when they are off again."""
 
 
-def states() -> np.ndarray:
-    """The time, and positions: lid, cube, carriage, fingers; then 12 velocities of nothing."""
+def states(*, early_s: float = 0.0, dropped: bool = False) -> np.ndarray:
+    """The time, and positions: lid, cube, carriage, fingers; then 12 velocities of nothing.
+
+    ``early_s``: by how much one finger comes to the cube earlier, and leaves it later [s].
+    ``dropped``: whether the gripper opens while it rests in the air, from which the cube falls.
+    """
     times = np.arange(0.0, 6.5, 1.0 / HZ)
 
     def course(*stops: tuple[float, float]) -> np.ndarray:
@@ -75,13 +79,20 @@ def states() -> np.ndarray:
     x = course((2.5, 0.0), (3.2, 0.25))
     z = course((0.0, 0.6), (1.0, 0.42), (1.7, 0.42), (2.5, 0.6), (3.2, 0.6), (4.2, 0.42),
                (4.7, 0.42), (5.7, 0.6))  # fmt: skip
-    shut = course((1.1, 0.0), (GRASP_S, 0.025), (RELEASE_S, 0.025), (RELEASE_S + 0.3, 0.0))
+    if dropped:
+        z = course((0.0, 0.6), (1.0, 0.42), (1.7, 0.42), (2.5, 0.6), (5.2, 0.6), (6.2, 0.9))
+
+    def shut(more_s: float) -> np.ndarray:
+        first, last = GRASP_S - more_s, RELEASE_S + more_s
+        return course((first - 0.4, 0.0), (first, 0.025), (last, 0.025), (last + 0.3, 0.0))
+
     held = (times >= GRASP_S) & (times <= RELEASE_S)
-    lifted = np.where(times < GRASP_S, 0.42, np.where(held, z, 0.42))
+    fallen = np.maximum(z - 0.5 * 9.81 * (times - RELEASE_S) ** 2, 0.42) if dropped else 0.42
+    lifted = np.where(times < GRASP_S, 0.42, np.where(held, z, fallen))
     zero, one = np.zeros_like(times), np.ones_like(times)
     cube = [np.where(times < GRASP_S, 0.0, x), zero, lifted, one, zero, zero, zero]
     rest = [zero] * (1 + 6 + 3 + 2)
-    return np.stack([times, zero, *cube, x, zero, z, shut, shut, *rest], axis=1)
+    return np.stack([times, zero, *cube, x, zero, z, shut(early_s), shut(0.0), *rest], axis=1)
 
 
 def write(

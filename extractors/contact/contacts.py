@@ -149,6 +149,8 @@ def _common_velocity(
 
 
 HAND = "hand"
+JAW = "jaw"
+"""A part of a gripper, between which and another it has what it grips."""
 
 
 def with_meeting_hands(capture: Capture) -> Capture:
@@ -409,7 +411,7 @@ def contacts(
     tasks = [partial(_of_pair, capture, *pair, calibration, limits) for pair in pairs]
     found = [each for some in shared(tasks, len(capture.times)) for each in some]
     direct = tuple(_direct(capture, found, surfaces, calibration))
-    whole = tuple(of_end_effectors(capture, direct, calibration))
+    whole = tuple(of_end_effectors(capture, direct, calibration, limits))
     met = [(each.first, each.second, each.interval) for each in whole]
     counted = counted_meetings(capture, bodies, met, limits)
     return tuple(each for each, counts in zip(whole, counted, strict=True) if counts)
@@ -459,10 +461,15 @@ def _of_pair(
 
 
 def of_end_effectors(
-    capture: Capture, found: Iterable[Contact], calibration: Calibration
+    capture: Capture, found: Iterable[Contact], calibration: Calibration, limits: Thresholds
 ) -> Iterator[Contact]:
-    """Contacts with those of the parts of an end-effector as its own: it touches where any does."""
+    """Contacts with those of the parts of an end-effector as its own: it touches where any does.
+
+    What a gripper grips it touches as long as two of its parts do: one jaw may meet the thing
+    shortly before the other, or leave it later.
+    """
     wholes = {each.name: each.part_of for each in capture.sensors if each.part_of}
+    jaws = {each.name for each in capture.sensors if each.end_effector == JAW}
     several: dict[tuple[str, str], list[Contact]] = {}
     for contact in found:
         whole = wholes.get(contact.first, contact.first)
@@ -473,9 +480,29 @@ def of_end_effectors(
     for (whole, other), parts in several.items():
         touching = mask([each.interval for each in parts], len(capture.times))
         dropout_s = calibration.contact_dropout_s
+        by_part = {each.first: mask([], len(capture.times)) for each in parts}
+        for each in parts:
+            by_part[each.first] |= mask([each.interval], len(capture.times))
+        gripped = np.sum(list(by_part.values()), axis=0) > 1
         for interval in intervals(touching, capture.times, dropout_s=dropout_s, minimum_s=0.0):
-            gap_m = min(each.gap_m for each in parts if each.interval[0] == interval[0])
+            if jaws & by_part.keys():
+                interval = _gripped(interval, gripped, capture.times, limits.jaws_s)  # noqa: PLW2901
+            spans = ((each.gap_m, *each.interval) for each in parts)
+            gap_m = min(gap_m for gap_m, first, last in spans if first <= interval[0] <= last)
             yield Contact(whole, other, interval, gap_m)
+
+
+def _gripped(
+    contact: Interval, gripped: Holds, times: Float[np.ndarray, "frames"], jaws_s: float
+) -> Interval:
+    """A contact without what one part alone has of it shortly before and after a grip."""
+    first, last = contact
+    inside = first + np.flatnonzero(gripped[first : last + 1])
+    if inside.size and times[inside[0]] - times[first] <= jaws_s:
+        first = int(inside[0])
+    if inside.size and times[last] - times[inside[-1]] <= jaws_s:
+        last = int(inside[-1])
+    return first, last
 
 
 def _direct(

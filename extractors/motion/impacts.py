@@ -8,7 +8,7 @@ from capar.model.geometry import Places, Series, Vector
 from extractors.bodies.bodies import BodyGeometry
 from extractors.bodies.poses import rotation_matrices
 from extractors.signals.filters import speed, velocity
-from extractors.signals.intervals import Interval, intervals
+from extractors.signals.intervals import Interval, intervals, time_step
 from extractors.thresholds import Thresholds
 
 GRAVITY_MPS2 = 9.81
@@ -119,10 +119,23 @@ def _speed_at_end(
 
 
 def falls(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:
-    """Closed intervals of frames in which a body's acceleration is that of free fall."""
+    """Closed intervals of frames in which a body's acceleration is that of free fall.
+
+    It is taken over five frames, against noise; where the shortest fall has fewer, over three, all
+    of which fall then.
+    """
     times = body.poses.smooth.times
-    rate = velocity(velocity(body.middles, times), times)
+    slow = 4.0 * time_step(times) > thresholds.fall_minimum_s
+    rate = velocity(body.middles, times)
+    if slow:
+        rate[1:-1] = np.diff(body.middles, 2, axis=0) / time_step(times) ** 2
+    else:
+        rate = velocity(rate, times)
     apart = geometry.lengths(rate + np.array([0.0, 0.0, GRAVITY_MPS2]))
     with np.errstate(invalid="ignore"):
         free = apart < thresholds.fall_share * GRAVITY_MPS2
+    if slow:
+        free[[0, -1]] = False
+        free[1:] |= free[:-1].copy()
+        free[:-1] |= free[1:].copy()
     return tuple(intervals(free, times, dropout_s=0.0, minimum_s=thresholds.fall_minimum_s))

@@ -94,6 +94,7 @@ def draft(path: Path, shown: str, demo: str = "") -> str:
     lines += [f"takes = {json.dumps(names)}"] if several else []
     take = "{take}" if several else names[0]
     lines += ["", f"files.motion = {{ path = {json.dumps(shown)}, demo = {json.dumps(take)} }}"]
+    lines += ["", "contact.tolerance_m = 0.001   # a simulator knows where surfaces are"]
     if several and not demo:
         return "\n".join(lines) + "\n"
     scene = _Scene.of(path, demo or None)
@@ -305,7 +306,7 @@ class _Scene:
         name = f"{side}_gripper".removeprefix("none_")
         yield palm, {"name": name, "end_effector": "hand", "side": side}
         for finger in fingers:
-            yield finger, {"end_effector": "finger", "side": side, "part_of": palm}
+            yield finger, {"end_effector": "jaw", "side": side, "part_of": palm}
 
 
 def _chain(link: int, above: Mapping[int, int]) -> Iterator[int]:

@@ -38,6 +38,24 @@ def test_a_demonstration_is_observed_without_a_capture_toml(file: Path) -> None:
     assert abs(held[0] - samples.GRASP_S) < 0.11 and abs(held[-1] - samples.RELEASE_S) < 0.11
 
 
+def test_a_gripper_holds_a_thing_while_both_jaws_touch_it(tmp_path: Path) -> None:
+    table = samples.states(early_s=0.3)
+    seen = capar.observe(samples.write(tmp_path / "carry.hdf5", demos=1, table=table))
+    (span,) = [each for each in capar.label([seen]) if each["row"] == "possession"]
+    assert span["start_s"] == pytest.approx(samples.GRASP_S, abs=0.11)
+    assert span["end_s"] == pytest.approx(samples.RELEASE_S, abs=0.11)
+
+
+def test_what_a_resting_gripper_lets_fall_is_dropped_though_few_frames_show_it(
+    tmp_path: Path,
+) -> None:
+    table = samples.states(dropped=True)
+    seen = capar.observe(samples.write(tmp_path / "drop.hdf5", demos=1, table=table))
+    (drop,) = [each for each in seen.links[0].segments if each.name == "Drop"]
+    assert drop.objects == ("cube",)
+    assert drop.start_s == pytest.approx(samples.RELEASE_S, abs=0.11)
+
+
 def test_motors_tell_the_gripper_and_joints_the_parts_and_what_is_only_seen_is_left_out(
     file: Path,
 ) -> None:
