@@ -116,3 +116,25 @@ def test_a_process_that_dies_is_told_with_its_capture(
     monkeypatch.setattr(sys, "executable", "/bin/true")
     with pytest.raises(CaparError, match=r"the process that observed .*c0 died.*--jobs"):
         list(observe_many([study], jobs=2))
+
+
+@pytest.mark.long
+def test_a_dask_cluster_keeps_what_one_process_keeps(study: Path, tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed", reason="pip install 'capar[cluster]'")
+    seen = [each.observation for each in observe_many([study], actionary=tmp_path / "one")]
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path)
+    ) as cluster:
+        address = cluster.scheduler_address
+        by = {"scheduler": address, "actionary": tmp_path / "cluster"}
+        assert [each.observation for each in observe_many([study], **by)] == seen
+        again = [each.known for each in observe_many([study], **by)]
+    assert again == [each.capture for each in seen if each]
+    assert content(tmp_path / "cluster") == content(tmp_path / "one")
+
+
+def test_a_cluster_that_is_not_there_is_told(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed", reason="pip install 'capar[cluster]'")
+    monkeypatch.setattr("capar.pipelines.many.CONNECT_S", 0.5)
+    with pytest.raises(CaparError, match=r"no dask scheduler answers at tcp://127\.0\.0\.1:9"):
+        list(observe_many([study], scheduler="tcp://127.0.0.1:9"))
