@@ -77,6 +77,9 @@ class Surroundings:
         ]
         """Shapes of the body, each with an object that stops it."""
 
+        self.looks = 0
+        """How often points on the surface of a hollow object were looked up."""
+
         self.watched = self.shapes(self.pairs)
         spacing_m = FINE_M if human.fingers else SPACING_M
         self.hollow = {n: _surface_points(t.shape, spacing_m) for n, t in scene.things.items()}
@@ -196,6 +199,7 @@ class Surroundings:
         """Points on a hollow object's surface near a part, in the frame of the part's shape [m]."""
         tree = self.hollow[name]
         assert tree is not None
+        self.looks += 1
         mocap = self.bodies[name]
         quaternion = np.array(self.data.mocap_quat[mocap])
         thing = Rotation.from_quat(quaternion, scalar_first=True).as_matrix()

@@ -45,6 +45,8 @@ class Motion:
 
     plan: Plan
     postures: Float[np.ndarray, "frames posture"]
+    looks: int = 0
+    """How often it was looked up what of a hollow object is near a limb [1]."""
 
     @cached_property
     def grasps(self) -> Mapping[str, tuple[Grasp, ...]]:
@@ -104,4 +106,4 @@ def perform_plan(plan: Plan, guide: Guide | None = None) -> Motion:
         clear.place({name: rows[frame] for name, rows in things.items()})
         solver.follow(target)
         postures[frame] = solver.posture
-    return Motion(plan, postures)
+    return Motion(plan, postures, clear.around.looks)

@@ -71,10 +71,11 @@ MOST_POSTURES, ATTEMPT = 300, 5
 """Key postures that are tried until something is refused, and as how many of them the paths of one
 attempt count: either takes 70 ms, so that they take less than 30 s [1]."""
 
-MOST_FRAMES = 8000
+MOST_FRAMES, LOOKS = 8000, 10
 """Frames of all motions that are tried, so that a search ends; more only of a first motion [1].
 
-A frame takes 3 ms, so that they take less than 30 s."""
+A frame takes 3 ms, so that they take less than 30 s; as long as one take so many looks at what of a
+hollow object, such as a chair, is near a limb [1]."""
 
 APART_M = 0.02
 """Objects that a hand takes together are no more than this farther apart than they were [m]."""
@@ -112,18 +113,19 @@ def regenerate(
 def best_motion(draft: Draft) -> tuple[Motion, Quality]:
     """The motion of a draft with grips that fails fewest gates."""
     tried: list[tuple[Motion, Quality]] = []
-    most = max(MOST_FRAMES // len(draft.source.times), 1)
+    frames, spent = len(draft.source.times), 0.0
     ways = ((False, False), (True, False), (False, True)) if draft.grips else ((False, False),)
     for guided, easy in ways:
-        if len(tried) == most or (tried and min(tried, key=_failures)[1].passed):
+        if tried and (spent + frames > MOST_FRAMES or min(tried, key=_failures)[1].passed):
             break
         if easy and not eased(draft):
             break
         guide = guide_of(draft) if guided else None
-        for care in CARES[: most - len(tried)]:
+        for care in CARES:
             motion = perform_plan(led(draft, care), guide)
             tried.append((motion, quality(motion)))
-            if not BY_CARE & set(tried[-1][1].failed):
+            spent += frames + motion.looks / LOOKS
+            if spent + frames > MOST_FRAMES or not BY_CARE & set(tried[-1][1].failed):
                 break
     return min(tried, key=_failures)
 

@@ -127,7 +127,7 @@ def test_a_spoilt_motion_does_not_pass(spoilt: object, gate: str) -> None:
 
 def test_out_of_reach_is_decided_before_anything_moves_with_what_would_help() -> None:
     source = recorded("touch")
-    scene = replace(source.scene, place=(-0.8, 0.0), stays=True)
+    scene = replace(source.scene, place=(-0.9, 0.0), stays=True)
     with pytest.raises(PlanError, match=r"misses by \d+ mm.*; standing \d\.\d\d m further ahead"):
         reachable(source, scene, source.human)
 
@@ -137,7 +137,7 @@ def test_no_remedy_is_sought_once_enough_postures_were_tried(
 ) -> None:
     monkeypatch.setattr(search, "MOST_POSTURES", 0)
     source = recorded("touch")
-    scene = replace(source.scene, place=(-0.8, 0.0), stays=True)
+    scene = replace(source.scene, place=(-0.9, 0.0), stays=True)
     with pytest.raises(PlanError, match=r"misses by \d+ mm.*; no other height, size, nearer"):
         reachable(source, scene, source.human)
 
