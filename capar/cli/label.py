@@ -34,7 +34,10 @@ def label(
     output: Annotated[
         Path, Option("--output", "-o", help="A file; of elan, praat and lerobot a new folder.")
     ],
-    format_: Annotated[Format, Option("--format", help="How they are written.")] = Format.CSV,
+    form: Annotated[
+        Format | None,
+        Option("--format", help="How they are written; else as the file's name ends, else csv."),
+    ] = None,
     per_frame: Annotated[
         bool, Option("--per-frame", help="A row a frame of each end-effector (csv, json, parquet).")
     ] = False,
@@ -58,7 +61,7 @@ def label(
     sentence and the rule that named it.
 
     \b
-        capar label 'study:*' -o labels.parquet --format parquet
+        capar label 'study:*' -o labels.parquet
         capar label demos --per-frame -o frames.csv --vocabulary words.toml
         capar label take1 take2 -o annotations --format elan
         capar label 'robot:*' --format lerobot --dataset robot_data -o labelled_data
@@ -68,6 +71,7 @@ def label(
     from capar.evaluation.plan import read_mapping
     from extractors.readers.bundle.patterns import find_captures
 
+    format_ = form or next((f for f in Format if output.suffix == f".{f}"), Format.CSV)
     if (format_ is Format.LEROBOT) != (dataset is not None):
         raise CaparError("--format lerobot takes --dataset FOLDER, and no other format does")
     if per_frame and format_ in FOLDERS:

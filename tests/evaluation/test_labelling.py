@@ -211,7 +211,7 @@ def test_a_capture_of_no_episode_and_two_hands_are_refused(demo: Any, tmp_path: 
 
 
 def test_the_command_writes_labels_and_refuses_what_does_not_fit(tmp_path: Path) -> None:
-    done = run("label", DRINKING, "-o", tmp_path / "a.parquet", "--format", "parquet")
+    done = run("label", DRINKING, "-o", tmp_path / "a.parquet")  # the name says the format
     assert "13 rows of 1 capture" in done
     assert pq.read_table(tmp_path / "a.parquet").num_rows == 13
     out = tmp_path / "x"
