@@ -257,6 +257,10 @@ class Rules(Panel):
 
     def _take_back(self, path: Path, stated: tuple[OpenCapture, Path, str] | None) -> None:
         settings = self.window.settings
+        if stated is not None:  # first: what is stored was observed with the text before
+            opened, file, before = stated
+            file.write_text(before, "utf-8")
+            opened.trial = read_capture(opened.place)
         if self._place:
             after = admitted_profile(settings.profile, added=self._others(path))
             remove_reclassifying(
@@ -264,10 +268,6 @@ class Rules(Panel):
             )
         else:
             path.unlink()
-        if stated is not None:
-            opened, file, before = stated
-            file.write_text(before, "utf-8")
-            opened.trial = read_capture(opened.place)
 
     # All rules
 

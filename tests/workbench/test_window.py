@@ -163,6 +163,27 @@ def test_a_person_corrects_a_segment(opened: Opened) -> None:
     opened.client.wait_for("Grope</td>")
 
 
+def test_a_rule_and_a_purpose_are_kept_and_both_are_taken_back(opened: Opened) -> None:
+    file, rule = opened.folder / "drink" / "capture.toml", opened.folder / "known/rules/seize.lp"
+    before = file.read_text()
+    opened.client.press("Keep what was observed")
+    opened.client.wait_for("kept drink_from_mug")
+    opened.window.choose(opened.segment("Reach"))
+    opened.settle()
+    opened.client.set("name", "Seize", "Text")
+    opened.client.set("purpose", "Fetch", "Text")
+    opened.client.press("Draft a rule")
+    opened.client.wait_for("drafted; read it below")
+    opened.client.press("Keep it")
+    opened.client.wait_for("Seize counts now")
+    assert rule.exists() and "Fetch" in file.read_text()
+    opened.settle()
+    opened.client.press("Undo")
+    opened.client.wait_for("Seize does not count any more")
+    assert not rule.exists() and file.read_text() == before
+    opened.client.set("purpose", "", "Text")
+
+
 def test_names_are_shown_as_text(opened: Opened) -> None:
     know = next(each for each in opened.window.panels if isinstance(each, Know))
     know.query(f'SELECT ("{EVIL}" AS ?x) WHERE {{ }}')
