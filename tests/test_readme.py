@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import demonstration_files
 import pytest
 import typer
 from commands import capar, clean_environment
@@ -45,6 +46,7 @@ def folder(tmp_path: Path) -> Path:
         text = toml.read_text().replace('"drink_from_mug"', f'"{name}"', 1)
         toml.write_text(f"takes = {takes}\n{text}" if takes else text)
     robot_data(tmp_path / "robot_data")
+    demonstration_files.write(tmp_path / "lift.hdf5", demos=4)
     return tmp_path
 
 
