@@ -81,7 +81,7 @@ def closed(trip: Trip) -> Closed:
     """How the fingers closed in a trip."""
     if trip.quality is None or trip.motion is None:
         return np.zeros(3, int), np.zeros(2)
-    grasps = [grasp for own in trip.motion.grasps.values() for grasp in own]
+    grasps = [grasp for own in trip.motion.grasps.values() for grasp in own if grasp.things]
     reaching, short = (sum(len(getattr(g, name)) for g in grasps) for name in ("reaching", "short"))
     measured = {each.name: each.value for each in (*trip.quality.gates, *trip.quality.told)}
     worst = [measured.get(f"fingers {name}", 0.0) for name in ("inside", "off")]

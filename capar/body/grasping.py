@@ -208,7 +208,7 @@ def closed_grasp(
     """Close each finger of a hand until it touches something.
 
     Each joint stops when a bone beyond it touches, and those beyond that bone go on. A finger that
-    touches nothing that is held stays open.
+    touches nothing that is held stays open, and out of others.
 
     Args:
         measures: Of the body.
@@ -221,8 +221,12 @@ def closed_grasp(
     reaching: list[str] = []
     short: list[str] = []
     for finger in fingers_of(measures, side):
-        thumb = finger.name.endswith(THUMB)
-        start, end, touches = (_close_thumb if thumb else _close_finger)(finger, around)
+        close = _close_thumb if finger.name.endswith(THUMB) else _close_finger
+        touches = False
+        if things:
+            start, end, touches = close(finger, around)
+        if not touches:
+            start = end = _clear(finger, _opens(finger), around)
         (reaching if touches else short).append(finger.name)
         opened.append(start)
         closed.append(end)
@@ -242,11 +246,9 @@ _Closed = tuple[Float[np.ndarray, "hinges"], Float[np.ndarray, "hinges"], bool]
 
 def _close_finger(finger: Finger, around: list[Near]) -> _Closed:
     """Angles of the open and the closed finger, and whether it touches what is held."""
-    start = _clear(finger, [np.array([first, 0.0, 0.0]) for first in OPEN], around)
+    start = _clear(finger, _opens(finger)[1:], around)
     end, apart, held = _close(finger, start, np.array(RATES), around)
-    if (held & (apart < REACHES_M)).any():
-        return np.zeros(3), end, True
-    return np.zeros(3), _clear(finger, [np.zeros(3), start], around), False
+    return np.zeros(3), end, bool((held & (apart < REACHES_M)).any())
 
 
 def _close_thumb(finger: Finger, around: list[Near]) -> _Closed:
@@ -258,11 +260,17 @@ def _close_thumb(finger: Finger, around: list[Near]) -> _Closed:
             end, apart, held = _close(finger, start, np.array([0.0, *RATES]), around)
             if (held & (apart < REACHES_M))[1:].any():
                 return start, end, True
-    start = _clear(finger, [np.array([0.0, first, 0.0, 0.0]) for first in FLAT], around)
+    start = _clear(finger, _opens(finger), around)
     end, apart, held = _close(finger, start, np.array([1.0, 0.0, 0.0, 0.0]), around)
-    if (held & (apart < REACHES_M)).any():
-        return start, end, True
-    return start, start, False
+    return start, end, bool((held & (apart < REACHES_M)).any())
+
+
+def _opens(finger: Finger) -> list[Float[np.ndarray, "hinges"]]:
+    """Angles of an open finger, the straight one first: bent back, bent, or a thumb opposed."""
+    if finger.name.endswith(THUMB):
+        flat = [np.array([0.0, first, 0.0, 0.0]) for first in FLAT]
+        return flat + [np.array([side, 0.0, 0.0, 0.0]) for side in OPPOSITIONS[-2::-1]]
+    return [np.array([first, 0.0, 0.0]) for first in (0.0, *OPEN)]
 
 
 def _clear(

@@ -9,6 +9,7 @@ from jaxtyping import Float
 
 from capar.body.grasping import CLOSE_S, Grasp, fingered, flexions, hand_grasps
 from capar.body.human import Human
+from capar.body.scripts import SIDES
 from capar.model.geometry import transforms
 from capar.regeneration.collisions import ClearTask, Surroundings
 from capar.regeneration.holds import hand_spans
@@ -53,8 +54,8 @@ class Motion:
         """How the fingers of each hand close on what it holds."""
         plan, out = self.plan, {}
         things = {n: (t.shape, plan.things[n]) for n, t in plan.scene.things.items()}
-        sites = plan.human.sites(self.postures, [f"{side}_hand" for side in plan.hands])
-        for side in plan.hands:
+        sites = plan.human.sites(self.postures, [f"{side}_hand" for side in SIDES])
+        for side in SIDES:
             hand = transforms(*sites[f"{side}_hand"])
             found = hand_grasps(
                 plan.human.measures, side, hand, things, self._spans(side), plan.source.rate_hz
@@ -63,10 +64,15 @@ class Motion:
         return out
 
     def _spans(self, side: str) -> Iterator[tuple[int, int, frozenset[str]]]:
-        """When a hand's fingers are closed on what; open when it throws and when it catches."""
+        """When a hand's fingers are closed on what; open when it throws and when it catches.
+
+        On nothing all the time, where it holds nothing: they keep out of what is near.
+        """
         source = self.plan.source
         opens = round(CLOSE_S * source.rate_hz)
         holds = [hold for hold in source.holds if hold.side == side]
+        if not holds:
+            yield 0, len(self.postures) - 1, frozenset()
         for span, names in hand_spans(holds, source.co_held):
             thrown = any((t.side, t.first) == (side, span.last) for t in source.throws)
             caught = any((t.catcher, t.last) == (side, span.first) for t in source.throws)

@@ -285,11 +285,10 @@ def _contact_gates(motion: Motion) -> tuple[list[Gate], tuple[Measure, ...]]:
 def _fingers(motion: Motion) -> tuple[list[Gate], list[Measure]]:
     """No bone of the five fingers is inside anything; how many close, and how far they are off.
 
-    Fingers that do not reach what the hand holds stay open. Nothing where nothing is held.
+    Fingers that do not reach what the hand holds stay open.
     """
     grasps, plan = [grasp for own in motion.grasps.values() for grasp in own], motion.plan
-    if not grasps:
-        return [], []
+    grasps = [grasp for grasp in grasps if grasp.things]
     human, postures = motion.fingered
     around, inside, off = Surroundings(human, plan.scene), [NONE], [NONE]
     things = {name: vectors(path) for name, path in plan.things.items()}

@@ -172,6 +172,22 @@ def test_a_thumb_that_lies_inside_a_crate_is_bent_out_of_it(who: str) -> None:
     assert min(gaps(grasp, THINGS["crate"][0], seat, who, "right").values()) > -0.001
 
 
+@pytest.mark.parametrize("who", ["man", "child"])
+def test_the_thumb_of_a_free_hand_keeps_out_of_what_is_beside_it(who: str) -> None:
+    measures = ready_made(who)
+    thumb = fingers_of(measures, "right")[0]
+    tip = thumb.points(np.zeros(4))[2, -1]
+    ahead = float(tip[0] + thumb.radii[2]) - 0.003
+    seat = RigidTransform.from_translation([ahead + 0.075, tip[1], tip[2] - 0.075])
+    crate, seats = THINGS["crate"][0], RigidTransform.concatenate([seat])
+    near = Near.of(crate, seats, measures["hand_length"], held=False)
+    grasp = closed_grasp(measures, "right", (0, 1), [], [near])
+    straight = replace(grasp, closed=np.zeros_like(grasp.closed))
+    assert gaps(straight, crate, seat, who, "right")["right_thumb"] < -0.002
+    assert min(gaps(grasp, crate, seat, who, "right").values()) > 0.0
+    assert not grasp.reaching
+
+
 @pytest.mark.parametrize("side", SIDES)
 def test_bones_are_where_the_model_of_the_body_has_them(side: str) -> None:
     human, rng = Human.of(ready_made("woman")), np.random.default_rng(3)
