@@ -32,7 +32,7 @@ bench: export PYTHONDONTWRITEBYTECODE =
 bench: $(VENV)/developing  ## Ratios side by side, half an hour on two quiet cores; NAME.py --help has larger sizes.
 	for each in $(BENCHMARKS); do echo; echo "== $$each"; $(VENV)/bin/python $$each || exit 1; done
 
-docs: written  ## The site in .make/site, with references made from code; over HTTP it can be searched.
+docs: written  ## The site in .make/site, with references made from code.
 	NO_MKDOCS_2_WARNING=1 $(VENV)/bin/mkdocs build --quiet
 
 written: $(VENV)/developing  ## What is written from code: the reference of capture.toml, terms of facts, inputs of rules.

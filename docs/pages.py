@@ -21,6 +21,7 @@ from ontology.files import read, term_files
 
 ROOT = Path(__file__).parents[1]
 SHOWN = ("*.md", "docs/**/*", "ontology/**/*", "capar_rules/*", "examples/**/*", "tests/**/*")
+SHIM = "https://unpkg.com/iframe-worker/shim"
 SUFFIXES = (".md", ".png", ".ipynb", "first_run.txt")
 
 
@@ -42,6 +43,16 @@ def on_files(files: Files, config: Any) -> Files:
 def on_page_markdown(markdown: str, **_: Any) -> str:
     """Fenced blocks whose second word is a file's name have it as their title."""
     return re.sub(r"^```(\w+) (\S+)$", r'```\1 title="\2"', markdown, flags=re.M)
+
+
+def on_post_page(output: str, **_: Any) -> str:
+    """The search of pages opened as files by our own script, in place of one on the network."""
+    own = (ROOT / "docs" / "search_in_frame.js").read_text(encoding="utf-8")
+    return output.replace(f'<script src="{SHIM}"></script>', f"<script>{own}</script>")
+
+
+on_post_template = on_post_page
+"""The page that says that there is none."""
 
 
 def _cell(text: str) -> str:

@@ -18,7 +18,7 @@ SMALLEST = {
     "explaining": "--trials 1",
     "live": "--events 10 --minutes 0.02 --faces 500",
     "live_takes": "slide_0.1mm --rounds 1",
-    "many": "--captures 4",
+    "many": "--captures 2",
     "moved_pivots": "",
     "natural": "touch",
     "observing": "--minutes 0.2 --sensors 5 --faces 500",
