@@ -13,10 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import CHROMIUM
 from bundles import DRINKING
 
 from extractors.readers.bundle.capture_toml import read_capture
+
+CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 
 pytestmark = [
     pytest.mark.long,
@@ -31,7 +32,7 @@ FLAGS = (
     "--disable-background-networking", "--disable-component-update", "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
 )  # fmt: skip
-WAIT_MS = 60_000
+WAIT_MS = 120_000
 
 
 class Person:
@@ -136,7 +137,7 @@ def window(chromium: Any, tmp_path: Path) -> Iterator[Callable[..., Person]]:
 
         def at(*arguments: str) -> Person:
             address = opened.enter_context(served(tmp_path, *arguments))
-            page = chromium.new_page(viewport={"width": 1400, "height": 900})
+            page = chromium.new_page(viewport={"width": 1000, "height": 700})
             opened.callback(page.close)
             page.set_default_timeout(WAIT_MS)
             page.goto(address)
@@ -241,6 +242,9 @@ def test_from_a_recording_to_a_child_who_does_it_beside_it(
     person.tab("Do again")
     person.press("Perform it")
     person.sees("child performs drink_from_mug: ")
+    person.press("Stop")
+    person.sees("stopped; nothing was kept")
+    person.press("Perform it")
     person.sees("performed by child: every gate holds")
     person.rests()
     person.write("new folder", "child_drinks")
