@@ -122,9 +122,13 @@ def performed(place: str, assumed: Path, agent: str) -> tuple[str, Motion | None
 def pictured(place: str, assumed: Path, motions: list[Motion], path: Path) -> None:
     """Draw a recording, and beside it what bodies made of it.
 
-    Where a hand takes hold, and where what it holds is farthest from where it was.
+    Where a hand takes hold, and where what it holds is farthest from where it was. Nothing of what
+    cannot be performed by anybody.
     """
-    source = motions[0].plan.source
+    try:
+        source = observed_source(place, assumed)
+    except CaparError:
+        return
     if whole_body(place):
         capture, from_s = read_capture(place), read_completion(assumed).from_s
         shown = bodies_alone(with_mannequin(stage(capture), fit_body(place, capture)))
@@ -161,7 +165,8 @@ def main() -> None:
                 made = [performed(place, assumed, agent) for agent in AGENTS]
                 print(f"| {name} | {' | '.join(said for said, _ in made)} |", flush=True)
                 motions = [motion for _, motion in made if motion]
-                if asked.pictures and motions:
+                if asked.pictures:
+                    asked.pictures.mkdir(parents=True, exist_ok=True)
                     pictured(place, assumed, motions, asked.pictures / f"{name}.png")
         return
     words = asked.words or ["box lift", "walk.bvh", "ReachForwardHigh"]

@@ -16,6 +16,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from capar.body.human import Human, body_spec
 from capar.body.recording import HAND_SEGMENTS
+from capar.body.scripts import SIDES
 from capar.model.capture import Shape
 from capar.regeneration.scenes import Scene
 from capar.regeneration.solving import vectors
@@ -252,29 +253,35 @@ CLEAR_M = 0.001  # How far the surface of a limb is kept from that of an object 
 
 HEAD = ("head", "right_eye", "left_eye")
 HEAD_CLEAR_M = 0.015  # Likewise the head, whose contacts are observed from 5 mm on [m].
+HAND_CLEAR_M = (
+    0.01  # Likewise a hand that is not led: five fingers stick out further than here [m].
+)
 
 CLEAR_COST = 100.0
 """Weight of a metre by which a limb is nearer [1/m]; two thirds of that of a palm's place."""
 
 
 class ClearTask(mink.Task):
-    """Pushes every part of the body but the hands, which have paths of their own, out of objects.
+    """Pushes every part of the body but the hands that have paths of their own out of objects.
 
     A part that is far enough from an object adds nothing.
     """
 
-    def __init__(self, around: Surroundings, met: Collection[str] = ()) -> None:
-        """Watch all parts and objects."""
+    def __init__(
+        self, around: Surroundings, met: Collection[str] = (), led: Collection[str] = SIDES
+    ) -> None:
+        """Watch all parts and objects, but for hands that are led and what the head meets."""
         self.around = around
+        parts = (*HAND_SEGMENTS, "thumb")
+        hands = {f"{side}_{part}" for side in led for part in parts}
+        clear_m = dict.fromkeys(HEAD, HEAD_CLEAR_M)
+        clear_m |= {f"{side}_{part}": HAND_CLEAR_M for side in SIDES for part in parts}
         self.pairs = [
             (geom, name)
             for geom, name in around.pairs
-            if (part := around.parts[geom]).partition("_")[2] not in (*HAND_SEGMENTS, "thumb")
-            and not (part in HEAD and name in met)
+            if (part := around.parts[geom]) not in hands and not (part in HEAD and name in met)
         ]
-        self.clear_m = np.array(
-            [HEAD_CLEAR_M if around.parts[geom] in HEAD else CLEAR_M for geom, _ in self.pairs]
-        )
+        self.clear_m = np.array([clear_m.get(around.parts[g], CLEAR_M) for g, _ in self.pairs])
         self.geoms = around.shapes(self.pairs)
         super().__init__(cost=np.full(len(self.pairs), CLEAR_COST))
         self.things = {name: vectors(thing.pose) for name, thing in around.scene.things.items()}

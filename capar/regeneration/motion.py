@@ -91,7 +91,7 @@ class Motion:
 def perform_plan(plan: Plan, guide: Guide | None = None) -> Motion:
     """Follow a plan frame by frame."""
     scene = plan.scene
-    clear = ClearTask(Surroundings(plan.human, scene), plan.source.met)
+    clear = ClearTask(Surroundings(plan.human, scene), plan.source.met, plan.hands)
     solver = Solver(plan.human, (*scene.place, scene.floor_m), scene.heading, (clear,))
     palms = {side: vectors(path * plan.frames.palms[side]) for side, path in plan.hands.items()}
     head = vectors(plan.head)

@@ -131,7 +131,7 @@ class Draft:
         self.firmness = around(source, source.meetings, SETTLE_S)
         self.looks = looks(source, self.things, self.head)
         self.gripping = Gripping(source, scene, self.old, self.new)
-        self.clear = ClearTask(self.gripping.around, source.met)
+        self.clear = ClearTask(self.gripping.around, source.met, source.hands)
         self.grips: tuple[Grip, ...] = ()
         self.firm = 1.0
         """How firmly hands are led in key postures, 1 being usual in a hold [1]."""

@@ -102,3 +102,15 @@ def test_what_the_head_meets_does_not_push_it(met: tuple[str, ...], pushed: bool
     thing = Thing("mug", box(0.05, 0.05, 0.05), (x + 0.03, y, z - 0.025))
     clear = ClearTask(Surroundings(human, Scene({"mug": thing}, (0.0, 0.0), 0.0)), met)
     assert bool(clear.compute_error(solver.configuration).min() < -0.005) == pushed
+
+
+@pytest.mark.parametrize(("led", "pushed"), [(("right", "left"), False), (("right",), True)])
+def test_a_hand_that_is_not_led_keeps_out_of_what_it_hangs_beside(
+    led: tuple[str, ...], pushed: bool
+) -> None:
+    human = Human.of(ready_made("woman"))
+    solver = Solver(human, (0.0, 0.0, 0.0), 0.0)
+    x, y, z = solver.site("left_palm").translation
+    thing = Thing("chest", box(0.3, 0.3, 0.3), (x, y + 0.18, z - 0.3))
+    clear = ClearTask(Surroundings(human, Scene({"chest": thing}, (0.0, 0.0), 0.0)), (), led)
+    assert bool(clear.compute_error(solver.configuration).min() < -0.002) == pushed
