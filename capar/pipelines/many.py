@@ -172,15 +172,16 @@ def _on_cluster(
     rules, known = client.scatter([rules, dict(known)], broadcast=True)
 
     def submit(place: str) -> Any:
-        where = str(Path.cwd() / place)  # a worker may be in another folder
-        return client.submit(_outcome, place, rules, known, where, pure=False)
+        return client.submit(_outcome, place, rules, known, str(Path.cwd()), pure=False)
 
     return submit, slots
 
 
-def _outcome(place: str, rules: Profile, known: Known, where: str = "") -> Outcome:
+def _outcome(place: str, rules: Profile, known: Known, folder: str = "") -> Outcome:
     try:
-        capture = read_capture(where or place)
+        if folder:
+            os.chdir(folder)  # places, and what is kept of sources, are relative to it
+        capture = read_capture(place)
         own = (rules.fingerprint, __version__, tuple(sorted(s.sha256 for s in capture.sources)))
         if known.get(capture.name) == own:
             return Outcome(place, known=capture.name)

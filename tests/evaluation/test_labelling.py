@@ -123,9 +123,22 @@ def test_elan_and_praat_read_back_as_the_segments(demo: Any, tmp_path: Path) -> 
     assert [(a, b) for a, b, _ in sorted(found)] == [
         (round(1000 * each["start_s"]), round(1000 * each["end_s"])) for each in wanted
     ]
-    assert {"right_hand contact mug", "right_hand possession", "mug contact table"} <= {
-        *Eaf(str(path)).get_tier_names()
-    }
+    read = Eaf(str(path))
+    facts = [re.fullmatch(r"(\w+)\((.*)\)", each) for each in json.loads(to_json(demo))["facts"]]
+    kinds = {"touching": ("contact", 0, 1), "moved_by": ("motion", 1, 0)}
+    expected: dict[str, list[tuple[int, int]]] = {}
+    for atom in filter(None, facts):
+        if atom[1] in kinds:
+            what, one, other = kinds[atom[1]]
+            terms = atom[2].split(",")
+            span = tuple(round(1000 * int(frame) / demo.rate_hz) for frame in terms[-2:])
+            expected.setdefault(f"{terms[one]} {what} {terms[other]}", []).append(span)
+    tiers = {each for each in read.get_tier_names() if " contact " in each or " motion " in each}
+    assert {
+        tier: sorted((a, b) for a, b, _ in read.get_annotation_data_for_tier(tier))
+        for tier in tiers
+    } == {tier: sorted(spans) for tier, spans in expected.items()}
+    assert "right_hand possession" in read.get_tier_names()
     (path,) = write_labels(label([demo]), "praat", tmp_path / "praat")
     read = [each for each in TextGrid(str(path)).get_tier("right_hand").get_intervals() if each[2]]
     assert [text for *_, text in read] == [text for *_, text in sorted(found)]

@@ -119,16 +119,21 @@ def test_a_process_that_dies_is_told_with_its_capture(
 
 
 @pytest.mark.long
-def test_a_dask_cluster_keeps_what_one_process_keeps(study: Path, tmp_path: Path) -> None:
+def test_a_dask_cluster_keeps_what_one_process_keeps(
+    study: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     distributed = pytest.importorskip("distributed", reason="pip install 'capar[cluster]'")
-    seen = [each.observation for each in observe_many([study], actionary=tmp_path / "one")]
+    monkeypatch.chdir(study.parent)  # places may be relative, and workers elsewhere
+    seen = [each.observation for each in observe_many(["study"], actionary=tmp_path / "one")]
+    monkeypatch.chdir(tmp_path)
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path)
     ) as cluster:
         address = cluster.scheduler_address
+        monkeypatch.chdir(study.parent)
         by = {"scheduler": address, "actionary": tmp_path / "cluster"}
-        assert [each.observation for each in observe_many([study], **by)] == seen
-        again = [each.known for each in observe_many([study], **by)]
+        assert [each.observation for each in observe_many(["study"], **by)] == seen
+        again = [each.known for each in observe_many(["study"], **by)]
     assert again == [each.capture for each in seen if each]
     assert content(tmp_path / "cluster") == content(tmp_path / "one")
 
