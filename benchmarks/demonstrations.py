@@ -49,6 +49,9 @@ cubes of a stack may lie near each other, and what is moved aside a little is na
 PAUSES = {"Touch", "TouchWith"}
 """As which pauses of a gripper that has something are named; they may stand anywhere."""
 
+DONE = {"Lift": "Lift", "Door": "Open", "Stack": RELEASE, "PickPlaceCan": f"{RELEASE}|Drop"}
+"""In which step a task succeeds, by the simulator's own check of height, hinge or place."""
+
 OBJECTS = {"Lift": "cube", "Stack": "cube_a", "PickPlaceCan": "can", "Door": "door_door"}
 HZ = 20.0
 WITHIN_S = 0.1
@@ -327,6 +330,13 @@ def named(found: list[str], wanted: list[str]) -> bool:
     return here or (optional and named(found, wanted[1:]))
 
 
+def in_order(found: list[str], wanted: list[str]) -> bool:
+    """Whether a plan's names come in their order, with whatever else between them."""
+    left = iter(found)
+    must = [each for each in wanted if not each.endswith("?")]
+    return all(any(name in each.split("|") for name in left) for each in must)
+
+
 def judged(place: str, truth: np.ndarray, policy: str) -> dict[str, Any]:
     """What was observed of an episode beside what the simulator says."""
     import capar
@@ -344,12 +354,15 @@ def judged(place: str, truth: np.ndarray, policy: str) -> dict[str, Any]:
             steps.append(row["name"])
         last = row["segment"]
     true = truth[:, 0] > 0.5
+    since = int(np.argmax(truth[:, 3]))
+    about = {row["name"] for row in rows[max(since - 2, 0) : since + 3]}
     ends = []
     for span in borders(true):
         near = min(borders(held), default=(-99, -99), key=lambda own: abs(own[0] - span[0]))
         ends.append([(own - its) / HZ for own, its in zip(near, span, strict=True)])
     return {
         "place": place, "policy": policy, "right": named(steps, plan), "steps": steps,
+        "in_order": in_order(steps, plan), "done": bool(about & {*DONE[task].split("|")}),
         "both": int((held & true).sum()), "ours": int(held.sum()), "theirs": int(true.sum()),
         "ends_s": ends,
     }  # fmt: skip
@@ -378,7 +391,7 @@ def judge(folder: Path, *, as_json: bool) -> None:
     both, ours, theirs = (sum(each[key] for each in results) for key in ("both", "ours", "theirs"))
     ends = [end for each in results for end in each["ends_s"]]
     near = [all(abs(away) <= WITHIN_S + 1e-9 for away in end) for end in ends]
-    right = sum(each["right"] for each in results)
+    right, done = (sum(each[key] for each in results) for key in ("right", "done"))
     for each in results:
         off = max((abs(away) for end in each["ends_s"] for away in end), default=0.0)
         mark = "" if each["right"] else "NAMES "
@@ -386,7 +399,12 @@ def judge(folder: Path, *, as_json: bool) -> None:
         print(f"{Path(each['place']).name} {each['policy']}: {mark}{' '.join(each['steps'])}")
     print(f"in hand, by frames: F1 {2 * both / max(ours + theirs, 1):.3f}")
     print(f"both ends within {WITHIN_S} s: {sum(near)} of {len(near)}")
+    print(f"lifted, opened, placed within {WITHIN_S} s of such a step: {done} of {len(results)}")
     print(f"names of all steps: {right} of {len(results)} episodes")
+    calm = [each["right"] for each in results if not each["policy"].endswith("noisy")]
+    print(f"... of policies without noise: {sum(calm)} of {len(calm)}")
+    ordered = sum(each["in_order"] for each in results)
+    print(f"... in their order, with others between them: {ordered} of {len(results)}")
 
 
 def main() -> None:
