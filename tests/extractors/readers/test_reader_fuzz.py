@@ -6,6 +6,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import demonstration_files
 import motion_files as samples
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -28,6 +29,7 @@ EDITS = st.lists(
     min_size=1,
     max_size=6,
 )
+FILES = {**samples.WRITERS, "hdf5": ("m.hdf5", demonstration_files.write)}
 WORDS = sorted({name for kind in TABLES.values() for name in kind.model_fields})
 QUICK = settings(
     max_examples=60,
@@ -47,13 +49,13 @@ def edited(data: bytes, edits: list[tuple[float, str, bytes]]) -> bytes:
     return bytes(out)
 
 
-@pytest.mark.parametrize("kind", sorted(samples.WRITERS))
+@pytest.mark.parametrize("kind", sorted(FILES))
 @QUICK
 @given(edits=EDITS)
 def test_a_damaged_file_of_motion_raises_nothing_but_our_own_errors(
     kind: str, edits: list[tuple[float, str, bytes]], tmp_path: Path
 ) -> None:
-    name, write = samples.WRITERS[kind]
+    name, write = FILES[kind]
     whole = tmp_path / f"whole_{name}"
     if not whole.exists():
         write(whole)
