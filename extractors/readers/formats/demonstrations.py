@@ -63,7 +63,7 @@ def read(path: Path, options: Mapping[str, Any]) -> Recording:
     times, positions, orientations = scene.motion()
     shapes = {scene.name(link): scene.shape(link) for link in scene.geoms}
     return Recording(
-        source=Source(str(path), "demonstrations", scene.digest),
+        source=Source(str(path), "hdf5", scene.digest),
         bodies={
             scene.name(link): track(
                 scene.name(link), times, positions[:, max(link, 0)], orientations[:, max(link, 0)]
