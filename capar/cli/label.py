@@ -1,5 +1,6 @@
 """Write labels of what was observed, for the pipelines of others."""
 
+from collections import Counter
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -10,6 +11,7 @@ from typer import Argument, Option
 from capar.cli import options
 from capar.cli.output import check_new_folder, check_writable, progress, written
 from capar.model.errors import CaparError
+from capar.model.par import UNKNOWN
 
 
 class Format(StrEnum):
@@ -71,7 +73,9 @@ def label(
     from capar.evaluation.plan import read_mapping
     from extractors.readers.bundle.patterns import find_captures
 
-    format_ = form or next((f for f in Format if output.suffix == f".{f}"), Format.CSV)
+    format_ = form or next((f for f in Format if output.suffix in {"", f".{f}"}), None)
+    if format_ is None:
+        raise CaparError(f"{output}: say in which format: --format {'|'.join(Format)}")
     if (format_ is Format.LEROBOT) != (dataset is not None):
         raise CaparError("--format lerobot takes --dataset FOLDER, and no other format does")
     if per_frame and format_ in FOLDERS:
@@ -99,4 +103,11 @@ def label(
         with written(output) as draft:
             write_labels(rows, format_, draft)
         told = f"{len(rows)} rows of {len(places)} capture{'s' * (len(places) != 1)}"
+    nameless = {
+        (row["capture"], row["effector"], row.get("segment", row.get("first")))
+        for row in rows
+        if row["name"] == UNKNOWN
+    }
+    if unknown := Counter(capture for capture, *_ in nameless):
+        told += f"; {sum(unknown.values())} segments Unknown, of {', '.join(sorted(unknown))}"
     typer.echo(f"wrote {output}: {told}")

@@ -231,6 +231,7 @@ def test_the_command_writes_labels_and_refuses_what_does_not_fit(tmp_path: Path)
     for arguments, wrong in (
         ([DRINKING, "-o", out, "--format", "elan", "--per-frame"], "elan has no rows by frame"),
         ([DRINKING, "-o", out, "--format", "lerobot"], "--format lerobot takes --dataset"),
+        ([DRINKING, "-o", tmp_path / "x.eaf"], "say in which format: --format csv|"),
         ([tmp_path / "none", "-o", out], "no capture here"),
     ):
         assert wrong in refused("label", *arguments)
