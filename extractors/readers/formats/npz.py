@@ -94,7 +94,9 @@ def _group(
     positions = _stacked(path, _array(path, arrays, group.get("positions")), 3)
     names = [str(group.get("body"))]
     if "body" not in group:
-        names = [str(each) for each in np.atleast_1d(_array(path, arrays, group.get("names")))]
+        stated = group.get("names")
+        own = stated if isinstance(stated, list) else _array(path, arrays, stated)
+        names = [str(each) for each in np.atleast_1d(own)]
     if len(names) != positions.shape[1]:
         raise FileError(path, f"{len(names)} names for {positions.shape[1]} bodies.")
     if "quaternions" not in group:

@@ -415,7 +415,9 @@ class ArrayGroup(Entry):
         "Array of quaternions; points without orientation have none.", None
     )
     order: Order | None = key("Order of the quaternions' components.", None)
-    names: str | None = key("Array of the bodies' names.", None)
+    names: TextOrTexts | None = key(
+        "Array of the bodies' or points' names, or the names themselves.", None
+    )
     body: str | None = key("Name of the one body.", None)
 
 

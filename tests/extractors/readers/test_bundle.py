@@ -9,6 +9,7 @@ import pytest
 from capar.model import geometry
 from capar.model.capture import Capture, Role, ShapeSource
 from capar.model.errors import CaparError, CaptureError, FileError, UnknownNameError
+from capar.pipelines.observation import observe
 from extractors.readers.bundle.capture_toml import frame_times, read_capture, takes
 
 BASE = """name = "trial"
@@ -201,3 +202,73 @@ sides = { left = "L_" }
     ]
     with pytest.raises(CaparError, match="tips"):
         read_capture(bundle(tmp_path, text.replace("{ tip", "{ tips"), "bvh"))
+
+
+MANO = """
+[files.hands]
+path = "hands.npz"
+unit = "m"
+up = "z"
+rate_hz = 30.0
+arrays = [
+  { positions = "right_joints", names = [
+    "wrist", "index_1", "index_2", "index_3", "middle_1", "middle_2", "middle_3",
+    "little_1", "little_2", "little_3", "ring_1", "ring_2", "ring_3",
+    "thumb_1", "thumb_2", "thumb_3",
+    "thumb_tip", "index_tip", "middle_tip", "ring_tip", "little_tip",
+  ] },
+  { body = "cup", positions = "cup_pos", quaternions = "cup_quat", order = "wxyz" },
+]
+
+[[sensor]]
+name = "right_hand"
+end_effector = "hand"
+side = "right"
+markers = ["wrist", "index_1", "middle_1", "ring_1", "little_1"]
+shape = { capsules = [["wrist", "index_1"], ["wrist", "little_1"]], radius_m = 0.012 }
+
+[[sensor]]
+name = "right_thumb"
+end_effector = "thumb"
+side = "right"
+markers = ["thumb_tip"]
+shape = { sphere = 0.008 }
+
+[[sensor]]
+name = "right_index"
+end_effector = "index"
+side = "right"
+markers = ["index_tip"]
+shape = { sphere = 0.008 }
+
+[[object]]
+name = "cup"
+tag = "mobile"
+body = "cup"
+shape = { box = [0.05, 0.05, 0.1] }
+"""
+
+
+def test_joints_of_a_hand_in_an_npz_file_are_one_hand_with_its_fingertips(tmp_path: Path) -> None:
+    times = np.arange(0.0, 5.0, 1.0 / 30.0)
+
+    def eased(start: float, end: float) -> np.ndarray:
+        share = np.clip((times - start) / (end - start), 0.0, 1.0)
+        return np.asarray(share**2 * (3.0 - 2.0 * share))
+
+    lift = 0.2 * eased(2.0, 3.0)
+    open_m = 0.03 * (1.0 - eased(1.0, 1.4))
+    joints = np.zeros((len(times), 21, 3))
+    joints[:, :, 1] = -0.02 - 0.08 * np.linspace(1.0, 0.0, 21)
+    joints[:, :, 0] = 0.01 * (np.arange(21) % 5)
+    joints[:, 16] = np.stack([-0.033 - open_m, 0 * times, 0 * times], axis=1)
+    joints[:, 17] = np.stack([0.033 + open_m, 0 * times, 0 * times], axis=1)
+    way = np.stack([0 * times, -0.3 * (1.0 - eased(0.0, 1.0)), lift + 0.5], axis=1)
+    cup = np.stack([0 * times, 0 * times, lift + 0.5], axis=1)
+    turns = np.tile([1.0, 0.0, 0.0, 0.0], (len(times), 1))
+    joints = joints + way[:, None]
+    np.savez(tmp_path / "hands.npz", right_joints=joints, cup_pos=cup, cup_quat=turns)
+    (tmp_path / "capture.toml").write_text(MANO)
+    (link,) = observe(tmp_path).links
+    done = [(each.name, each.objects) for each in link.segments if each.name != "Touch"]
+    assert (link.ee, done) == ("right_hand", [("Reach", ("cup",)), ("Lift", ("cup",))])
