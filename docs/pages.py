@@ -81,7 +81,7 @@ def _command(command: Any, ctx: click.Context) -> Iterator[str]:
     below = command.list_commands(ctx) if hasattr(command, "list_commands") else []
     if ctx.parent:
         yield f"\n{'#' * len(ctx.command_path.split())} {ctx.command_path}\n"
-    text = re.sub(r"^(\\b|\x08)\n", "", command.help or "", flags=re.M)
+    text = re.sub(r"^\x08\n", "", command.help or "", flags=re.M)
     yield text
     if not below:
         yield f"\n    {command.get_usage(ctx).removeprefix('Usage: ')}"

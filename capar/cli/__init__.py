@@ -55,6 +55,7 @@ class Commands(TyperGroup):
         app.rich_markup_mode = None
         command = typer.main.get_command(app)
         command.name = name
+        command.help = (command.help or "").replace("\\b\n", "\b\n")  # keeps examples in lines
         return command
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:

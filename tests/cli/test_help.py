@@ -24,3 +24,9 @@ def test_each_command_has_help(name: str) -> None:
     result = CliRunner().invoke(app, [name, "--help"])
     assert result.exit_code == 0
     assert result.stdout.startswith(f"Usage: root {name}")
+    assert "\\b" not in result.stdout
+
+
+def test_examples_of_a_help_stand_in_lines_of_their_own() -> None:
+    told = CliRunner().invoke(app, ["observe", "--help"], env={"COLUMNS": str(COLUMNS)}).stdout
+    assert "\n      capar observe mine --plot mine.png\n" in told
