@@ -1,7 +1,7 @@
 """Demonstrations of a simulator of others, judged by what that simulator itself says of each frame.
 
 In an environment with robosuite 1.5 (``pip install robosuite h5py "mujoco<3.4"``):
-``python benchmarks/demonstrations.py record FOLDER [--episodes 12] [--seed 0]`` writes a file for
+``python benchmarks/demonstrations.py record FOLDER [--episodes 14] [--seed 0]`` writes a file for
 each task: lift, stack, pick and place, open a door, by policies that follow a plan, some of them
 disturbed. With the states stand, for each frame, the simulator's own checks: grasp, height, hinge,
 success. PLANS states as which steps each policy's episodes should be named.
@@ -411,7 +411,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("what", choices=("record", "judge"))
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--episodes", type=int, default=12)
+    parser.add_argument("--episodes", type=int, default=14)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--json", action="store_true")
     given = parser.parse_args()
