@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 import viser
@@ -182,7 +181,7 @@ class Again(Panel):
             "GLB": lambda: glb_bytes(*values),
             "C3D": lambda: c3d_bytes(*values),
         }[form]()
-        _write_whole(path, made_bytes)
+        path.write_bytes(made_bytes)
         return f"wrote {self.window.folders.named(path)}"
 
     def _need(self) -> Made:
@@ -237,13 +236,3 @@ def _gate_row(gate: Gate, source: Source) -> tuple[str, ...]:
         where = f"{where} at {float(source.times[gate.frame]):.2f} s".strip()
     name = gate.name if gate.passed else f"✗ {gate.name}"
     return name, f"{gate.value:.2f} {gate.unit}", f"{sign} {gate.limit:g}", where
-
-
-def _write_whole(path: Path, content: bytes) -> None:
-    """A new file, whole or not at all."""
-    draft = path.with_name(f".{path.name}.part")
-    try:
-        draft.write_bytes(content)
-        draft.replace(path)
-    finally:
-        draft.unlink(missing_ok=True)

@@ -272,15 +272,12 @@ class Rules(Panel):
     # All rules
 
     def _show_rule(self) -> None:
-        if self._rule.value != NONE:
-            self._rule_text.content = self.rule(self._rule.value)
-
-    def rule(self, name: str) -> str:
-        """What a rule is, and its text, as HTML."""
-        found = rule_of(self.window.settings.rule_base(), name)
+        if self._rule.value == NONE:
+            return
+        found = rule_of(self.window.settings.rule_base(), self._rule.value)
         above = f" It is a kind of {', '.join(found.general)}." if found.general else ""
         said = f"{found.definition} ({found.origin}; verb: {found.verb or 'none'}.){above}"
-        return html.text(said) + html.code(Path(found.file).read_text("utf-8"))
+        self._rule_text.content = html.text(said) + html.code(Path(found.file).read_text("utf-8"))
 
     def _edit(self) -> str:
         if self._rule.value == NONE:

@@ -15,8 +15,7 @@ from capar.views.viewer.stage import stage, with_mannequin
 from capar.workbench.window import Panel
 
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "4")
-NOBODY = "nothing"
-NONE = "(none)"
+NOBODY, NONE = "nothing", "(none)"
 KEYS = (
     "Keys: space plays, J and L step a frame, P and N go to the previous and next segment, O loops "
     "over the segment, F follows its hand, H shows everything. While a field has the focus, keys "

@@ -36,6 +36,9 @@ TICK_S = 1.0 / 40.0
 SLIDER_S = 0.1
 """While it plays, the slider follows so often [s]: it is slower to draw than the scene."""
 
+MOMENT_S = 0.4
+"""What takes less than this shows no progress bar [s]."""
+
 PANEL_PX = 400
 LEAST_PX, LANES_PX = 420, 325
 """The time line is at least so wide; in a low window it is so high, or half of it [px]."""
@@ -149,7 +152,8 @@ class Window:
         self.segment: Segment | None = None
         self.time_s, self.speed = 0.0, 1.0
         self.playing, self.looping, self.following = False, False, ""
-        self._waits = False
+        self._waits, self._idle_s = False, 0.0
+        self._job = self._job_shown = ("", 0.0)
         self.lock = threading.RLock()
         self.jobs = Jobs(self._show_job)
         self.updates = 0
@@ -221,7 +225,7 @@ class Window:
             shown = StagedCapture(self.server, f"/c{number}", staged, beside_m=beside)
             opened = OpenCapture(place, trial, shown)
             self.captures.append(opened)
-            self._activate(opened)
+            self.activate(opened)
             self.look_at_all()
         return opened
 
@@ -242,20 +246,17 @@ class Window:
         with self.lock:
             opened.shown.remove()
             self.captures.remove(opened)
-            self._activate(self.captures[-1] if self.captures else None)
+            self.activate(self.captures[-1] if self.captures else None)
 
-    def activate(self, opened: OpenCapture) -> None:
-        """Look at another one of the open captures."""
+    def activate(self, opened: OpenCapture | None) -> None:
+        """Look at another one of the open captures, or at none."""
         with self.lock:
-            self._activate(opened)
-
-    def _activate(self, opened: OpenCapture | None) -> None:
-        self.active, self.segment = opened, None
-        self.looping, self.following = False, ""
-        self._slider.max = round(max(self.duration_s, 0.02) + 5e-4, 3)
-        self._shown_s = -1.0
-        self._draw_lanes()
-        self._tell("captured")
+            self.active, self.segment = opened, None
+            self.looping, self.following = False, ""
+            self._slider.max = round(max(self.duration_s, 0.02) + 5e-4, 3)
+            self._shown_s = -1.0
+            self._draw_lanes()
+            self._tell("captured")
 
     @property
     def duration_s(self) -> float:
@@ -300,7 +301,7 @@ class Window:
             opened.rows = rows(seen.observation, speeds, lost)
             opened.shown.find(seen.observation)
             if opened is self.active:
-                self._activate(opened)
+                self.activate(opened)
 
     def rules_changed(self) -> None:
         """Observe everything again, as other rules count now."""
@@ -416,6 +417,7 @@ class Window:
                 self.time_s = max(moved, first)
             if self.time_s != self._shown_s:
                 self._show_now()
+        self._draw_job()
         if self._waits and not self.jobs.running:
             self.observe()
 
@@ -480,7 +482,13 @@ class Window:
         def failed(words: str) -> None:
             where.content = html.message(words)
 
-        self.jobs.start(title, work, done, failed)
+        def finished(result: Any) -> None:
+            where.content = ""
+            done(result)
+
+        if not self.jobs.running:
+            where.content = html.note(f"{title} … (see the top of this panel)")
+        self.jobs.start(title, work, finished, failed)
 
     def _layout(self) -> None:
         gui: Any = self.server.gui
@@ -647,7 +655,15 @@ class Window:
         return "".join(parts)
 
     def _show_job(self, what: str, share: float) -> None:
-        on = bool(what)
+        self._job = what, share  # the clock draws it
+
+    def _draw_job(self) -> None:
+        """Show what is being done, if it takes more than a moment: else the tabs would jump."""
+        (what, share), now = self._job, time.monotonic()
+        self._idle_s = now if not what else self._idle_s
+        if self._job == self._job_shown or (what and now - self._idle_s < MOMENT_S):
+            return
+        self._job_shown, on = (what, share), bool(what)
         self._job_text.content = html.note(f"{what} …") if on else ""
         self._job_bar.value = 100.0 * min(max(share, 0.03), 1.0)
         for each in (self._job_text, self._job_bar, self._job_stop):

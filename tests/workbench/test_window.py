@@ -173,7 +173,7 @@ def test_a_rule_and_a_purpose_are_kept_and_both_are_taken_back(opened: Opened) -
     opened.client.set("name", "Seize", "Text")
     opened.client.set("purpose", "Fetch", "Text")
     opened.client.press("Draft a rule")
-    opened.client.wait_for("drafted; read it below")
+    opened.client.wait_for("drafted; read it below", 240.0)  # seconds of work, more beside other
     opened.client.press("Keep it")
     opened.client.wait_for("Seize counts now")
     assert rule.exists() and "Fetch" in file.read_text()
