@@ -78,7 +78,7 @@ class Again(Panel):
         self._gates = gui.add_html("")
         with gui.add_folder("Save"):
             self._folder = gui.add_text("new folder", "performed")
-            self._saved = self.button("Save the capture", lambda: self.save(self._folder.value))
+            self._saved = self.button("Save it", lambda: self.save(self._folder.value))
             self._form = gui.add_dropdown("motion as", list(EXPORTS))
             self.button("Export the motion", self.export, self._saved)
 
@@ -167,7 +167,7 @@ class Again(Panel):
         write_motion(
             made.done.motion, made.capture, folder / "2_action" if made.stepped else folder
         )
-        return f"saved as {self.window.folders.named(folder)}"
+        return f"saved {made.capture.name} as {self.window.folders.named(folder)}"
 
     def export(self) -> str:
         """Write the motion of the body to a file of another format."""

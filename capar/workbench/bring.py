@@ -27,13 +27,14 @@ GENERAL = "general"
 LARGEST_BYTES = 400_000_000
 """A larger file is not taken from the browser; put it into the folder."""
 
-WORDS = ("name", "end_effector", "body", "kind", "top_at_bottom_of")
+WORDS = ("name", "body", "kind", "top_at_bottom_of")
 """Keys whose value is a text."""
 
 CHOICES = {
     "unit": ("m", "dm", "cm", "mm", "in", "ft"), "up": tuple(UP), "handedness": ("right", "left"),
     "side": ("none", "right", "left"), "role": ("acts", "attends"),
     "tag": ("mobile", "fixed", "self"),
+    "end_effector": ("hand", "foot", "head", "eyes", "forearm", "elbow", "knee"),
 }  # fmt: skip
 """Keys that have few values; those of any other are written as in TOML."""
 
@@ -96,7 +97,7 @@ class Bring(Panel):
         with gui.add_folder("Save"):
             self._folder = gui.add_text("new folder", "")
             self._saved = self.button(
-                "Save the capture", lambda: self.save(self._folder.value), color="green"
+                "Save the draft", lambda: self.save(self._folder.value), color="green"
             )
 
     def captured(self) -> None:
@@ -296,7 +297,8 @@ class Bring(Panel):
             self.window.drop(shown)
         self.window.open(str(folder))
         self.captured()
-        return f"saved as {self.window.folders.named(folder)}"
+        self.text = ""  # what is saved is not edited here any more
+        return f"saved the draft as {self.window.folders.named(folder)}"
 
     def _need(self) -> None:
         if not self.text:

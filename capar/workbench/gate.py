@@ -52,8 +52,6 @@ class Gate:
 
     def __init__(self, token: str = "") -> None:
         self.token = token or secrets.token_urlsafe(24)
-        self.passed = 0
-        """How many requests were let through."""
 
     def refusal(self, path: str, headers: Headers, port: int) -> str:
         """Why a request is refused; empty where it is not."""
@@ -83,7 +81,6 @@ class Gate:
                 headers = Headers(**{"Content-Type": "text/plain", **HEADERS})
                 headers["Content-Length"] = str(len(text))
                 return Response(HTTPStatus.FORBIDDEN, "Forbidden", headers, text)
-            self.passed += 1
             path, mark, asked = request.path.partition("?")
             inner = "/" + "/".join(path.split("/")[2:]) + mark + asked
             found = answer(connection, replace(request, path=inner))

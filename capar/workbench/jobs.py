@@ -55,14 +55,10 @@ class Jobs:
         done: Callable[[Any], None],
         failed: Callable[[str], None],
     ) -> None:
-        """Begin work, which may be stopped until its result is handed on.
+        """Begin work, which may be stopped until its result is handed on to ``done``.
 
-        Args:
-            title: What it is.
-            work: What is done; it is given a function that reports what is done now, and which
-                share is done.
-            done: Takes its result, and is not stopped any more.
-            failed: Takes the message of what went wrong, or that it was stopped.
+        It is given a function that reports what is done now, and which share. What went wrong, or
+        that it was stopped, is handed to ``failed``.
 
         Raises:
             CaparError: Something else is still being done.

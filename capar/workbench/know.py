@@ -160,6 +160,7 @@ class Know(Panel):
     def ask(self, name: str, given: dict[str, str]) -> str:
         """Ask a named question and show what is answered."""
         asked = questions()[name]
+        self._table.content = ""
         with self.book() as book:
             found = book.store.ask_within(asked.bind(given), seconds=TIME_LIMIT_S)
             if not found.rows:
@@ -169,6 +170,7 @@ class Know(Panel):
 
     def query(self, text: str) -> str:
         """Ask SPARQL and show what is answered; it can only read."""
+        self._table.content = ""
         with self.book() as book:
             found = book.query(text, seconds=TIME_LIMIT_S)
         self._show(found)

@@ -60,14 +60,7 @@ class _Node:
 
 
 class StagedCapture:
-    """Shows one capture in the scene.
-
-    Args:
-        server: Whose scene it is.
-        path: The node below which everything is put.
-        stage: The bodies and how they moved.
-        beside_m: By how much it is moved along x, to stand beside another one [m].
-    """
+    """Shows one capture below a node of the scene, moved along x by ``beside_m``."""
 
     def __init__(
         self, server: viser.ViserServer, path: str, stage: Stage, *, beside_m: float = 0.0

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from capar.body.body_fitting import fit_body
+from capar.body.recording import Truth, write_bundle
 from capar.body.sensor_fitting import Fit
 from capar.model.errors import CaparError
 from capar.model.observation import SegmentAddress
@@ -16,11 +17,7 @@ from capar.workbench.window import Panel
 
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "4")
 NOBODY, NONE = "nothing", "(none)"
-KEYS = (
-    "Keys: space plays, J and L step a frame, P and N go to the previous and next segment, O loops "
-    "over the segment, F follows its hand, H shows everything. While a field has the focus, keys "
-    "are letters: click into the scene first."
-)
+KEYS = "Keys, in the scene: space plays, J L a frame, P N a segment, O loop, F follow, H all."
 
 
 class See(Panel):
@@ -52,6 +49,7 @@ class See(Panel):
         self.button(
             "Fit a body", self.fit, self._said, hint="Of the performer's measures, to the sensors."
         )
+        self.button("Save this capture", self.save, self._said, hint="In a folder of its name.")
         self.button("Close this capture", self._drop, self._said, color="gray")
         with gui.add_folder("What was done"):
             self._story = gui.add_html(html.note("Nothing is observed yet."))
@@ -114,6 +112,16 @@ class See(Panel):
         if self.window.active is None:
             raise CaparError("no capture is open")
         self.window.drop(self.window.active)
+
+    def save(self) -> str:
+        """Save a capture that is only in this window, such as a live recording."""
+        opened, folders = self.window.active, self.window.folders
+        if opened is None or opened.place:
+            raise CaparError("the chosen capture is in a folder already")
+        folder = folders.new(opened.trial.name)
+        write_bundle(opened.trial, Truth((), (), (), ()), folder)
+        opened.place = str(folder)
+        return f"saved {opened.trial.name} in {folders.named(folder)}"
 
     def fit(self) -> str:
         """Fit a human body to the sensors, in the background."""

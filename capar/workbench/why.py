@@ -46,7 +46,8 @@ class Why(Panel):
             self._conditions = gui.add_html("")
         with gui.add_folder("Nearest other name"):
             self._nearest = gui.add_html("")
-        with gui.add_folder("Measured over time", expand_by_default=False):
+        self._plot = gui.add_folder("Measured over time", expand_by_default=False)
+        with self._plot:
             self._plot_place = gui.add_html("")
             self.button("Draw it", self.draw, self._plot_place)
             self._image: Any = None
@@ -147,7 +148,8 @@ class Why(Panel):
         if self._image is not None:
             self._image.image = image
         else:
-            self._image = self.gui.add_image(image, format="png")
+            with self._plot:
+                self._image = self.gui.add_image(image, format="png")
 
     def _ask_not(self) -> None:
         if self._other.value == CHOOSE:

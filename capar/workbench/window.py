@@ -506,7 +506,7 @@ class Window:
         self._tabs_place = gui.add_folder(None)
         self._panel = gui.add_panel()
         with self._panel.add_tab("Timeline"):
-            names = ("◀ segment", "◀ frame", "play", "frame ▶", "segment ▶", "loop")
+            names = ("◀ segment", "◀ frame", "play / pause", "frame ▶", "segment ▶", "loop")
             buttons = gui.add_button_group("", names)
             actions: dict[str, Callable[[], Any]] = {
                 names[0]: lambda: self.choose_next(-1),
@@ -541,8 +541,7 @@ class Window:
         """Loop over the segment that is chosen, or stop looping."""
         if not self.looping and self.segment is None:
             raise CaparError("choose a segment first: it is what is looped over")
-        self.looping = not self.looping
-        self.playing = self.playing or self.looping
+        self.playing = self.looping = not self.looping
         return "looping over the segment" if self.looping else ""
 
     def follow(self, name: str = "") -> str:

@@ -176,8 +176,8 @@ def test_from_a_foreign_bvh_to_a_saved_bundle(
     person.pick("up", "z")
     person.write("name", "somebody stands")
     person.write("new folder", "stands")
-    person.press("Save the capture")
-    person.sees("saved as stands")
+    person.press("Save the draft")
+    person.sees("saved the draft as stands")
     person.rests()
     person.tab("See")
     person.sees("Stand")
@@ -248,8 +248,8 @@ def test_from_a_recording_to_a_child_who_does_it_beside_it(
     person.sees("performed by child: every gate holds")
     person.rests()
     person.write("new folder", "child_drinks")
-    person.press("Save the capture")
-    person.sees("saved as child_drinks")
+    person.press("Save it")
+    person.sees("saved drink_from_mug_child as child_drinks")
     assert read_capture(str(tmp_path / "child_drinks")).agent.name == "child"
     assert not person.faults
 
@@ -266,5 +266,7 @@ def test_a_simulated_tracker_is_observed_while_it_moves(
     person.sees("frames are in the window as live_1")
     person.rests()
     person.tab("See")
-    person.sees("What was done")
+    person.press("Save this capture")
+    person.sees("saved live_1 in live_1")
+    assert read_capture(str(tmp_path / "live_1")).name == "live_1"
     assert not person.faults
