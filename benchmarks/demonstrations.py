@@ -278,7 +278,7 @@ def attempt(env: Any, policy: str, rng: np.random.Generator) -> Episode:
         held, _, _, success = np.array(run.truth, dtype=float).T
         grasps = borders(held > 0.5)
         if success.any() and len(grasps) == sum(
-            each in {"Lift", "Open"} for each in PLANS[policy][1]
+            step in {"Lift", "Open"} for step in PLANS[policy][1]
         ):
             return run
 
@@ -333,8 +333,8 @@ def named(found: list[str], wanted: list[str]) -> bool:
 def in_order(found: list[str], wanted: list[str]) -> bool:
     """Whether a plan's names come in their order, with whatever else between them."""
     left = iter(found)
-    must = [each for each in wanted if not each.endswith("?")]
-    return all(any(name in each.split("|") for name in left) for each in must)
+    must = [step for step in wanted if not step.endswith("?")]
+    return all(any(name in step.split("|") for name in left) for step in must)
 
 
 def judged(place: str, truth: np.ndarray, policy: str) -> dict[str, Any]:

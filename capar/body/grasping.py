@@ -32,7 +32,7 @@ ALONG = np.linspace([0.4, 0.0, 0.0], 1.0, 11, axis=1)
 #: Objects are measured this far from the middle of the hand [share of its length], and distances
 #: of bones from them up to this [m]
 NEAR_HAND, FAR_M = 0.75, 0.05
-#: At so many instants of a hold, others near the hand are kept clear of [1]
+#: At how many instants of a hold fingers are kept clear of other things near the hand [1]
 INSTANTS = 9
 #: How fast the joints of a finger close against each other [1], and steps at most
 RATES, STEPS = (1.0, 1.0, 0.7), 200

@@ -322,7 +322,7 @@ def corpus(
     options.require_actionary(actionary, observed=True)
     with options.open_words(options.opened(actionary), corrected=corrected) as store:
         assert store is not None
-        asked = {each: question(each) for each in ("statistics", "sequences", "outliers")}
+        asked = {name: question(name) for name in ("statistics", "sequences", "outliers")}
         found = {name: store.ask(each.bind({})) for name, each in asked.items()}
     rows = {name: list(each.plain()) for name, each in found.items()}
     if plot:

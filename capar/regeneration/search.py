@@ -74,8 +74,8 @@ attempt count: either takes 70 ms, so that they take less than 30 s [1]."""
 MOST_FRAMES, LOOKS = 8000, 10
 """Frames of all motions that are tried, so that a search ends; more only of a first motion [1].
 
-A frame takes 3 ms, so that they take less than 30 s; as long as one take so many looks at what of a
-hollow object, such as a chair, is near a limb [1]."""
+A frame takes 3 ms, so that all take less than 30 s; looking ten times at which part of a hollow
+object, such as a chair, is near a limb takes as long as a frame and counts as one [1]."""
 
 APART_M = 0.02
 """Objects that a hand takes together are no more than this farther apart than they were [m]."""

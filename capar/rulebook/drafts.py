@@ -145,7 +145,7 @@ def _shown(
         for at, each in enumerate(own.segments)
         if all(one.name != name for one in own.segments[max(at - 1, 0) : at + 2])
     ]
-    others = far or [each for each in own.segments if each.name != name]
+    others = far or [segment for segment in own.segments if segment.name != name]
     if others:
         yield own, max(others, key=lambda e: (e.name == segment.name, e.known, -e.index))
 

@@ -484,9 +484,9 @@ def of_end_effectors(
         for each in parts:
             by_part[each.first] |= mask([each.interval], len(capture.times))
         gripped = np.sum(list(by_part.values()), axis=0) > 1
-        for interval in intervals(touching, capture.times, dropout_s=dropout_s, minimum_s=0.0):
-            if jaws & by_part.keys():
-                interval = _gripped(interval, gripped, capture.times, limits.jaws_s)  # noqa: PLW2901
+        for met in intervals(touching, capture.times, dropout_s=dropout_s, minimum_s=0.0):
+            jawed = jaws & by_part.keys()
+            interval = _gripped(met, gripped, capture.times, limits.jaws_s) if jawed else met
             spans = ((each.gap_m, *each.interval) for each in parts)
             gap_m = min(gap_m for gap_m, first, last in spans if first <= interval[0] <= last)
             yield Contact(whole, other, interval, gap_m)

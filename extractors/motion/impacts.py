@@ -126,16 +126,15 @@ def falls(body: BodyGeometry, thresholds: Thresholds) -> tuple[Interval, ...]:
     """
     times = body.poses.smooth.times
     slow = 4.0 * time_step(times) > thresholds.fall_minimum_s
-    rate = velocity(body.middles, times)
     if slow:
+        rate = np.zeros_like(body.middles)
         rate[1:-1] = np.diff(body.middles, 2, axis=0) / time_step(times) ** 2
     else:
-        rate = velocity(rate, times)
+        rate = velocity(velocity(body.middles, times), times)
     apart = geometry.lengths(rate + np.array([0.0, 0.0, GRAVITY_MPS2]))
     with np.errstate(invalid="ignore"):
         free = apart < thresholds.fall_share * GRAVITY_MPS2
     if slow:
-        free[[0, -1]] = False
         free[1:] |= free[:-1].copy()
         free[:-1] |= free[1:].copy()
     return tuple(intervals(free, times, dropout_s=0.0, minimum_s=thresholds.fall_minimum_s))

@@ -397,7 +397,7 @@ def _compiled(path: Path, where: str, xml: str) -> "mujoco.MjModel":
             if mesh.name not in wanted:
                 spec.delete(mesh)
             elif mesh.file:
-                found = _asset(path, where, os.path.join(spec.meshdir, mesh.file))  # noqa: PTH118
+                found = _asset(path, where, str(Path(spec.meshdir, mesh.file)))
                 mesh.file = f"{number}{found.suffix.lower()}"
                 spec.assets[mesh.file] = found.read_bytes()
         spec.meshdir = ""
@@ -433,7 +433,7 @@ def _asset(path: Path, where: str, stated: str) -> Path:
                 return found
     raise FileError(
         where,
-        f"needs the mesh {stated!r}, which is not below {' or '.join(map(str, folders))}.",
+        f"needs the mesh {stated!r}, which is in none of {', '.join(map(str, folders))}.",
         f"Put it beside the file, or set {ASSETS} to the folder of the model's assets: "
         "robosuite/models/assets where robosuite is installed.",
     )
