@@ -5,6 +5,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -26,6 +27,9 @@ from extractors.readers.bundle.patterns import find_captures
 
 AHEAD = 2
 """So many captures a process are observed before the first of them is kept: results take memory."""
+
+FLUSHED_S = 4.0
+"""How often what is kept is put on disk, and then told; each time costs, more as there is more."""
 
 CONNECT_S = 10.0
 """How long a cluster's scheduler is waited for [s]."""
@@ -61,9 +65,9 @@ def observe_many(
 ) -> Iterator[Outcome]:
     """Observe captures, in their order; failures are reported, and do not end the others.
 
-    With an Actionary each is kept when it is yielded, by this process alone, and one that is there
-    from the same files, by the same rules and version, is not observed again: what was killed goes
-    on where it was when it is started again.
+    With an Actionary each is on disk when it is yielded, put there by this process alone, and one
+    that is there from the same files, by the same rules and version, is not observed again: what
+    was killed goes on where it was when it is started again.
 
     Args:
         captures: Patterns: folders, globs, FOLDER:TAKE, FOLDER:*.
@@ -95,13 +99,21 @@ def observe_many(
             )
             for each in store.observations()
         }
-        for outcome in _outcomes(places, jobs, base, known, scheduler):
-            try:
-                if outcome.observation is not None:
-                    store.add(outcome.observation)
-                yield outcome
-            except CaparError as error:  # another capture of its name is there
-                yield Outcome(outcome.place, error=str(error))
+        with store.store.together() as flush:
+            since, kept = -FLUSHED_S, list[Outcome]()
+            for outcome in _outcomes(places, jobs, base, known, scheduler):
+                try:
+                    if outcome.observation is not None:
+                        store.add(outcome.observation)
+                    kept.append(outcome)
+                except CaparError as error:  # another capture of its name is there
+                    kept.append(Outcome(outcome.place, error=str(error)))
+                if time.monotonic() - since > FLUSHED_S:
+                    flush()
+                    yield from kept
+                    since, kept = time.monotonic(), []
+            flush()
+            yield from kept
 
 
 def _outcomes(
