@@ -8,7 +8,9 @@ success. PLANS states as which steps each policy's episodes should be named.
 
 In ours: ``CAPAR_ASSETS=.../robosuite/models/assets python benchmarks/demonstrations.py judge
 FOLDER [--json]`` observes them and prints F1 of the frames in hand, borders within 0.1 s, and the
-share of episodes whose steps have the names. Without recordings nothing is done.
+share of episodes whose steps have the right names: those of the plan, in its order, and between
+them only what the simulator shows as well, by its contacts and poses (``shown``). Disturbed
+policies do brush and push. Without recordings nothing is done.
 """
 
 import argparse
@@ -52,6 +54,12 @@ PAUSES = {"Touch", "TouchWith"}
 DONE = {"Lift": "Lift", "Door": "Open", "Stack": RELEASE, "PickPlaceCan": f"{RELEASE}|Drop"}
 """In which step a task succeeds, by the simulator's own check of height, hinge or place."""
 
+BODIES = {
+    "Lift": "cube_main",
+    "Stack": "cubeA_main",
+    "PickPlaceCan": "Can_main",
+    "Door": "Door_door",
+}
 OBJECTS = {"Lift": "cube", "Stack": "cube_a", "PickPlaceCan": "can", "Door": "door_door"}
 HZ = 20.0
 WITHIN_S = 0.1
@@ -76,8 +84,7 @@ class Episode:
     @property
     def body(self) -> int:
         """The body that the task is about."""
-        names = {"Lift": "cube_main", "Stack": "cubeA_main", "PickPlaceCan": "Can_main"}
-        return self.env.sim.model.body_name2id(names.get(self.task, "Door_door"))
+        return self.env.sim.model.body_name2id(BODIES[self.task])
 
     @property
     def place(self) -> np.ndarray:
@@ -330,11 +337,69 @@ def named(found: list[str], wanted: list[str]) -> bool:
     return here or (optional and named(found, wanted[1:]))
 
 
-def in_order(found: list[str], wanted: list[str]) -> bool:
-    """Whether a plan's names come in their order, with whatever else between them."""
-    left = iter(found)
-    must = [step for step in wanted if not step.endswith("?")]
-    return all(any(name in step.split("|") for name in left) for step in must)
+def beyond(found: list[str], wanted: list[str]) -> list[int] | None:
+    """Which names stand between those of a plan; None unless these come, in their order."""
+    planned: list[int] = []
+    for step in wanted:
+        names = step.removesuffix("?").split("|")
+        here = [n for n, name in enumerate(found) if name in names and n not in planned]
+        here = [n for n in here if not planned or n > planned[-1]]
+        if here:
+            planned.append(here[0])
+        elif not step.endswith("?"):
+            return None
+    return [n for n in range(len(found)) if n not in planned]
+
+
+def simulated(place: str, task: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What MuJoCo says of each frame: whether the gripper touches the thing, and its pose."""
+    import mujoco
+
+    from extractors.readers.formats.demonstrations import _Scene
+
+    path, _, demo = place.rpartition(":")
+    scene = _Scene.of(Path(path), demo)
+    model, data = scene.model, mujoco.MjData(scene.model)
+    body = model.body(BODIES[task]).id
+    own = model.body_rootid[model.geom_bodyid] == model.body_rootid[body]
+    names = [model.body(each).name for each in model.geom_bodyid]
+    gripper = np.array(["gripper" in name or "finger" in name for name in names])
+    touched, places, turns = [], [], []
+    for state in scene.states:
+        data.qpos[:], data.qvel[:] = np.split(state[1 : 1 + model.nq + model.nv], [model.nq])
+        mujoco.mj_forward(model, data)
+        pairs = data.contact.geom[: data.ncon]
+        touched.append(bool((own[pairs].any(axis=1) & gripper[pairs].any(axis=1)).any()))
+        places.append(data.xpos[body].copy())
+        turns.append(data.xquat[body].copy())
+    return np.array(touched), np.array(places), np.array(turns)
+
+
+def shown(name: str, first: int, last: int, told: tuple[np.ndarray, ...]) -> bool:
+    """Whether the simulator shows a step as well.
+
+    A Reach ends where the gripper comes to touch the thing, within 0.1 s; a ResumePosture or
+    Withdraw begins where it no longer does. In any other step it touches the thing in most frames,
+    and moves it by a millimetre or turns it by a degree, up in a Lift and down in a Lower.
+    """
+    touched, places, turns = told
+    near = round(WITHIN_S * HZ)
+
+    def about(frame: int) -> bool:
+        return bool(touched[max(frame - near, 0) : frame + near + 1].any())
+
+    if name == "Unknown":
+        return False
+    if name == "Reach":
+        return about(last)
+    if name in RELEASE.split("|"):
+        return about(first)
+    during = slice(first, last + 1)
+    moved = np.linalg.norm(places[during] - places[first], axis=1).max() >= 0.001
+    turned = 2 * np.arccos(np.abs(turns[during] @ turns[first]).clip(0, 1)).max() >= np.radians(1)
+    rise = (places[min(last, len(places) - 1)] - places[first]) @ UP
+    along = {"Lift": rise > 0, "Lower": rise < 0}.get(name, True)
+    return bool(touched[during].mean() > 0.5 and (moved or turned) and along)
 
 
 def judged(place: str, truth: np.ndarray, policy: str) -> dict[str, Any]:
@@ -347,12 +412,18 @@ def judged(place: str, truth: np.ndarray, policy: str) -> dict[str, Any]:
     rows = [row for row in rows if row["effector"] == "right_gripper"]
     held = np.array([thing in row["holds"] for row in rows])
     steps: list[str] = []
-    last = None
-    for row in rows:
-        about = row["objects"][:1] == [thing] and row["name"] not in PAUSES
-        if row["segment"] != last and about:
-            steps.append(row["name"])
-        last = row["segment"]
+    spans: list[list[int]] = []
+    before = None
+    for frame, row in enumerate(rows):
+        if row["objects"][:1] == [thing] and row["name"] not in PAUSES:
+            if row["segment"] != before:
+                steps.append(row["name"])
+                spans.append([frame, frame])
+            spans[-1][1] = frame
+        before = row["segment"]
+    others = beyond(steps, plan)
+    told = simulated(place, task) if others else ()
+    wrong = [steps[n] for n in others or () if not shown(steps[n], *spans[n], told)]
     true = truth[:, 0] > 0.5
     since = int(np.argmax(truth[:, 3]))
     about = {row["name"] for row in rows[max(since - 2, 0) : since + 3]}
@@ -361,8 +432,9 @@ def judged(place: str, truth: np.ndarray, policy: str) -> dict[str, Any]:
         near = min(borders(held), default=(-99, -99), key=lambda own: abs(own[0] - span[0]))
         ends.append([(own - its) / HZ for own, its in zip(near, span, strict=True)])
     return {
-        "place": place, "policy": policy, "right": named(steps, plan), "steps": steps,
-        "in_order": in_order(steps, plan), "done": bool(about & {*DONE[task].split("|")}),
+        "place": place, "policy": policy, "exact": named(steps, plan), "steps": steps,
+        "in_order": others is not None, "beyond": len(others or ()), "not_shown": wrong,
+        "right": others is not None and not wrong, "done": bool(about & {*DONE[task].split("|")}),
         "both": int((held & true).sum()), "ours": int(held.sum()), "theirs": int(true.sum()),
         "ends_s": ends,
     }  # fmt: skip
@@ -394,17 +466,21 @@ def judge(folder: Path, *, as_json: bool) -> None:
     right, done = (sum(each[key] for each in results) for key in ("right", "done"))
     for each in results:
         off = max((abs(away) for end in each["ends_s"] for away in end), default=0.0)
-        mark = "" if each["right"] else "NAMES "
+        mark = "" if each["right"] else f"NAMES {each['not_shown'] or 'not as planned'} "
         mark += "" if off <= WITHIN_S + 1e-9 else f"ENDS {each['ends_s']} "
         print(f"{Path(each['place']).name} {each['policy']}: {mark}{' '.join(each['steps'])}")
     print(f"in hand, by frames: F1 {2 * both / max(ours + theirs, 1):.3f}")
     print(f"both ends within {WITHIN_S} s: {sum(near)} of {len(near)}")
     print(f"lifted, opened, placed within {WITHIN_S} s of such a step: {done} of {len(results)}")
-    print(f"names of all steps: {right} of {len(results)} episodes")
-    calm = [each["right"] for each in results if not each["policy"].endswith("noisy")]
-    print(f"... of policies without noise: {sum(calm)} of {len(calm)}")
-    ordered = sum(each["in_order"] for each in results)
-    print(f"... in their order, with others between them: {ordered} of {len(results)}")
+    print(f"names of all steps right: {right} of {len(results)} episodes")
+    exact, ordered, others = (
+        sum(each[key] for each in results) for key in ("exact", "in_order", "beyond")
+    )
+    calm = [each["exact"] for each in results if not each["policy"].endswith("noisy")]
+    print(f"... no others than planned: {exact}, without noise {sum(calm)} of {len(calm)}")
+    print(f"... the planned ones in their order: {ordered} of {len(results)}")
+    wrong = sum(len(each["not_shown"]) for each in results)
+    print(f"steps beyond the plans that the simulator shows: {others - wrong} of {others}")
 
 
 def main() -> None:

@@ -171,18 +171,24 @@ def _lean(known: Measures, asked: Measured, frames: Frames) -> Series:
 
 
 def _motion(known: Measures, asked: Measured, frames: Frames) -> Series:
-    """How far a body is from its middle place or mean orientation, and the floor of its motion."""
+    """How far a body is from its middle place or mean orientation, and the floor of its motion.
+
+    The middle is that of the whole motion which an interval has a part of.
+    """
     (name,) = asked.bodies
-    interval, body = slice(asked.first, asked.last + 1), known.body(name)
+    body, ends = known.body(name), [asked.first, asked.last]
     floors = known.measurements.calibration.body(name)
+    if name in known.measurements.bodies.objects:
+        bars, held = known.bars(Moving, object=name), "moving"
+        if asked.relation == ">":  # it moves
+            ends += [end for bar in bars if bar[0] < ends[1] and bar[1] > ends[0] for end in bar]
+    else:
+        bars, held = known.bars(Resting, ee=name), "resting"
+    interval = slice(min(ends), max(ends) + 1)
     if asked.quantity == "motion":
         away, floor = from_middle(body.middles, interval), floors.motion_floor_m
     else:
         away, floor = from_mean(body.orientations, interval), floors.motion_floor_rad
-    if name in known.measurements.bodies.objects:
-        bars, held = known.bars(Moving, object=name), "moving"
-    else:
-        bars, held = known.bars(Resting, ee=name), "resting"
     return Series(frames, MILLI * away[frames], (MILLI * floor,), bars, held, most=True)
 
 
