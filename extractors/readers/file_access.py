@@ -6,6 +6,7 @@ import lzma
 import zipfile
 import zlib
 from collections.abc import Sequence
+from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
@@ -37,11 +38,13 @@ def check_file(path: Path) -> None:
 
 
 def neighbours(path: Path) -> str:
-    """What the folder of a missing file holds."""
-    if not path.parent.is_dir():
-        return f"There is no folder {path.parent} either."
-    names = sorted(each.name for each in path.parent.iterdir())
-    return f"The folder holds: {', '.join(names[:12]) or 'nothing'}{', ...' * (len(names) > 12)}."
+    """What the nearest folder of a missing file holds, and which of that may be meant."""
+    while path.parent != path and not path.parent.is_dir():
+        path = path.parent
+    names = sorted(each.name for each in path.parent.glob("[!.]*"))
+    holds = f"{', '.join(names[:12]) or 'nothing'}{', ...' * (len(names) > 12)}"
+    meant = "".join(f" Did you mean {each!r}?" for each in get_close_matches(path.name, names, n=1))
+    return f"The folder {path.parent} holds: {holds}.{meant}"
 
 
 def read_bytes(path: Path, limit: int | None = None) -> bytes:

@@ -41,7 +41,7 @@ from extractors.readers.bundle.bodies import (
     to_world,
 )
 from extractors.readers.bundle.shapes import Frame, WorldPose, build_shape, under_object
-from extractors.readers.file_access import source_of
+from extractors.readers.file_access import neighbours, source_of
 from extractors.readers.names import (
     WHOLES,
     constant_name,
@@ -105,7 +105,7 @@ def find_place(place: str | Path) -> tuple[Path, str]:
         raise FileError(
             text,
             f"no capture here: there is no file {path}.",
-            f"Write one with: capar new-capture FILES... -o {wanted}",
+            f"{neighbours(path)} Write one with: capar new-capture FILES... -o {wanted}",
         )
     return path, take
 
