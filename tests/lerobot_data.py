@@ -12,13 +12,13 @@ from pathlib import Path
 def write(folder: Path, episodes: list[int]) -> None:
     from lerobot.datasets import LeRobotDataset
 
-    features = {"observation.state": {"dtype": "float32", "shape": (2,), "names": ["a", "b"]}}
+    features = {"observation.state": {"dtype": "float32", "shape": (3,), "names": ["a", "b", "c"]}}
     made = LeRobotDataset.create("own/data", fps=30, features=features, root=folder)
     import numpy as np
 
     for frames in episodes:
         for frame in range(frames):
-            state = np.array([frame, 0.5], np.float32)
+            state = np.array([frame, 0.5, 0.0], np.float32)
             made.add_frame({"observation.state": state, "task": "drink"})
         made.save_episode()
     made.finalize()

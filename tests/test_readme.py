@@ -11,7 +11,7 @@ import demonstration_files
 import pytest
 import typer
 from commands import capar, clean_environment
-from robot_data import robot_data
+from robot_data import demo_data
 
 from capar.cli import app
 
@@ -45,7 +45,10 @@ def folder(tmp_path: Path) -> Path:
         name = Path(place).name
         text = toml.read_text().replace('"drink_from_mug"', f'"{name}"', 1)
         toml.write_text(f"takes = {takes}\n{text}" if takes else text)
-    robot_data(tmp_path / "robot_data")
+    demo_data(tmp_path / "robot_data", count=4)
+    pages = (ROOT / "docs" / "own-files.md").read_text()
+    (mapping,) = re.findall(r"```toml\n([^`]*observation\.state.*?)```", pages, re.S)
+    (tmp_path / "robot_data" / "capture.toml").write_text(mapping)
     demonstration_files.write(tmp_path / "lift.hdf5", demos=4)
     return tmp_path
 

@@ -48,7 +48,10 @@ def label(
         Option(metavar="FILE", help="Other labels for our names, as `capar evaluate --mapping`."),
     ] = None,
     dataset: Annotated[
-        Path | None, Option(metavar="FOLDER", help="Of lerobot: the data set to copy.")
+        Path | None,
+        Option(
+            metavar="FOLDER", help="Of lerobot: the data set to copy; else that of the captures."
+        ),
     ] = None,
     effector: Annotated[str, Option(metavar="NAME", help="Of lerobot: whose segments.")] = "",
     profile: options.ProfileName = "extended",
@@ -66,17 +69,18 @@ def label(
         capar label 'study:*' -o labels.parquet
         capar label demos --per-frame -o frames.csv --vocabulary words.toml
         capar label take1 take2 -o annotations --format elan
-        capar label 'robot:*' --format lerobot --dataset robot_data -o labelled_data
+        capar label 'robot_data:*' --format lerobot -o labelled_data
     """
-    from capar.evaluation.labelling import arrow, write_labels
     from capar.evaluation.labelling import label as labels
+    from capar.evaluation.labelling import write_labels
     from capar.evaluation.plan import read_mapping
     from extractors.readers.bundle.patterns import find_captures
+    from extractors.readers.file_access import arrow
 
     format_ = form or next((f for f in Format if output.suffix in {"", f".{f}"}), None)
     if format_ is None:
         raise CaparError(f"{output}: say in which format: --format {'|'.join(Format)}")
-    if (format_ is Format.LEROBOT) != (dataset is not None):
+    if dataset is not None and format_ is not Format.LEROBOT:
         raise CaparError("--format lerobot takes --dataset FOLDER, and no other format does")
     if per_frame and format_ in FOLDERS:
         raise CaparError(f"{format_} has no rows by frame; leave out --per-frame, or write csv")
@@ -89,6 +93,10 @@ def label(
     mapping = read_mapping(vocabulary) if vocabulary else None
     base = options.rule_base(profile, rules, actionary, steady=steady)
     places = find_captures(captures)
+    if format_ is Format.LEROBOT:
+        from capar.evaluation.lerobot import data_set_of
+
+        dataset = dataset or data_set_of(places)
     told_of = progress("observing")(places)
     rows = list(labels(told_of, per_frame=per_frame, vocabulary=mapping, rules=base))
     if dataset is not None:

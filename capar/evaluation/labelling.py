@@ -23,6 +23,7 @@ from capar.pipelines.linguistic_report import primitive_files, primitive_words
 from capar.pipelines.observation import observe
 from capar_rules.engine.profiles import DEFAULT, Profile, profile
 from extractors.readers.bundle.patterns import find_captures
+from extractors.readers.file_access import arrow
 
 Row = dict[str, Any]
 
@@ -173,21 +174,6 @@ def _json(rows: list[Row], path: Path) -> None:
 
 def _columns(rows: list[Row]) -> Mapping[str, type]:
     return FRAME_COLUMNS if rows and "frame" in rows[0] else COLUMNS
-
-
-def arrow() -> Any:
-    """The module pyarrow.
-
-    Raises:
-        CaparError: It is not installed.
-    """
-    try:
-        return import_module("pyarrow")
-    except ModuleNotFoundError:
-        raise CaparError(
-            "Parquet needs pyarrow, which is not installed; it comes with the extra 'labels': "
-            "pip install 'capar[labels]'"
-        ) from None
 
 
 def _parquet(rows: list[Row], path: Path) -> None:

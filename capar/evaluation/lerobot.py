@@ -12,8 +12,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from capar.evaluation.labelling import Row, arrow
+from capar.evaluation.labelling import Row
 from capar.model.errors import CaparError, FileError, UnknownNameError
+from extractors.readers.bundle.capture_toml import find_place, open_bundle
+from extractors.readers.file_access import arrow
+from extractors.readers.schema.capture import MotionFile
+from extractors.readers.schema.entry import expanded
 
 PERSISTENT, EVENTS, STYLE = "language_persistent", "language_events", "subtask"
 FEATURE = {"dtype": "language", "shape": [1], "names": None}
@@ -66,6 +70,29 @@ def write_subtasks(
     for path in files:
         counts |= _rewrite(parquet, output / path.relative_to(dataset), subtasks)
     return dict(sorted(counts.items()))
+
+
+def data_set_of(places: Iterable[str]) -> Path:
+    """The data set that captures are read from.
+
+    Raises:
+        CaparError: They are read from none, or from several, or not from the first frame on.
+    """
+    bundles = {find_place(place)[0]: place for place in places}
+    documents = [open_bundle(place)[0] for place in bundles.values()]
+    for each in documents:
+        if each.from_s:
+            raise each.error(
+                "from_s", "labels count from an episode's first frame.", "Leave it out."
+            )
+    files = [each for document in documents for each in document.files.values()]
+    found = dict.fromkeys(
+        expanded(each, "path") for each in files if isinstance(each, MotionFile) and each.episode
+    )
+    if len(found) != 1:
+        problem = f"these captures are read from {' and '.join(map(str, found)) or 'none'}"
+        raise CaparError(f"--format lerobot copies one data set; {problem}: say --dataset FOLDER")
+    return next(iter(found))
 
 
 def _subtasks(rows: Iterable[Row], effector: str) -> dict[int, list[tuple[float, str]]]:

@@ -7,13 +7,15 @@ import zipfile
 import zlib
 from collections.abc import Sequence
 from difflib import get_close_matches
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
 from capar.model.capture import Source
-from capar.model.errors import FileError
+from capar.model.errors import CaparError, FileError
 
 EXPANDED_LIMIT = 1 << 30  # Bytes that a compressed file may expand to [B].
 HEAD = 4096  # Bytes by which a format is recognised [B].
@@ -114,6 +116,21 @@ def check_zip(path: Path, limit: int = EXPANDED_LIMIT) -> list[str]:
             "A motion or mesh file of that size is refused before it is expanded.",
         )
     return [each.filename for each in members]
+
+
+def arrow() -> Any:
+    """The module pyarrow.
+
+    Raises:
+        CaparError: It is not installed.
+    """
+    try:
+        return import_module("pyarrow")
+    except ModuleNotFoundError:
+        raise CaparError(
+            "Parquet needs pyarrow, which is not installed; it comes with the extra 'labels': "
+            "pip install 'capar[labels]'"
+        ) from None
 
 
 _MISSING = {"", "nan", "na", "null", "none"}

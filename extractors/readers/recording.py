@@ -135,6 +135,20 @@ def track_of_matrices(
     return track(name, times, np.where(seen[:, None], positions, np.nan), orientations)
 
 
+ROTATIONS = {"helical": "", "euler_xyz": "XYZ", "rpy": "xyz"}
+"""What three numbers of an orientation are: a vector along the axis, as long as the angle; angles
+about axes that turn with the body; roll, pitch and yaw about fixed axes. With scipy's sequences."""
+
+
+def quaternions_of(
+    turns: Float[np.ndarray, "frames 3"], kind: str, *, degrees: bool = False
+) -> Float[np.ndarray, "frames 4"]:
+    """Orientations of three numbers, of one of ``ROTATIONS``, as quaternions w x y z."""
+    if kind == "helical":
+        return geometry.quaternions(Rotation.from_rotvec(turns, degrees=degrees))
+    return geometry.quaternions(Rotation.from_euler(ROTATIONS[kind], turns, degrees=degrees))
+
+
 def uniform_clock(frames: int, rate_hz: float) -> Float[np.ndarray, "frames"]:
     """Time stamps of frames at a steady rate, from zero [s].
 

@@ -13,6 +13,7 @@ from extractors.readers.formats import (
     csv_table,
     demonstrations,
     json_trajectory,
+    lerobot,
     motive,
     npz,
     qualisys,
@@ -41,6 +42,9 @@ class Reader:
     """The capture.toml of a file that itself says what is what: of its path, how the path is to be
     stated, and the trial in it that is described."""
 
+    trials: Callable[[Path], list[str]] | None = None
+    """The names of a data set's trials; each is a take where a capture.toml states neither."""
+
 
 READERS = (
     Reader("c3d", "C3D: markers and ROTATION data", c3d.recognises, c3d.read),
@@ -63,6 +67,14 @@ READERS = (
         demonstrations.read,
         demonstrations.OPTIONS,
         demonstrations.draft,
+    ),
+    Reader(
+        "lerobot",
+        "LeRobot data sets of version 3: features that capture.toml maps",
+        lerobot.recognises,
+        lerobot.read,
+        lerobot.OPTIONS,
+        trials=lerobot.episodes,
     ),
     Reader("npz", "NPZ: arrays that capture.toml maps", npz.recognises, npz.read, npz.OPTIONS),
     Reader(
@@ -97,7 +109,11 @@ def reader_for(path: Path) -> Reader:
     for reader in READERS:
         if reader.recognises(path, head):
             return reader
-    kind = "is a folder and no ROS 2 bag." if path.is_dir() else "is of no format known here."
+    kind = (
+        "is a folder, and neither a ROS 2 bag nor a LeRobot data set."
+        if path.is_dir()
+        else "is of no format known here."
+    )
     known = "; ".join(each.description for each in READERS)
     raise FileError(path, kind, f"These are read: {known}.")
 
@@ -106,7 +122,7 @@ def read_recording(path: Path | str, *, options: Options | None = None) -> Recor
     """One file's bodies and markers.
 
     Args:
-        path: The file, or the folder of a ROS 2 bag.
+        path: The file, or the folder of a ROS 2 bag or a LeRobot data set.
         options: What a capture.toml says about the file: columns, arrays, members.
 
     Raises:
@@ -123,11 +139,11 @@ def read_recording(path: Path | str, *, options: Options | None = None) -> Recor
 
 def says_itself(path: Path) -> bool:
     """Whether a file itself says what in it is what, and amounts to a capture.toml."""
-    return path.is_file() and _drafting(path) is not None
+    return _drafting(path) is not None
 
 
 def _drafting(path: Path) -> Reader | None:
-    head = read_bytes(path, HEAD)
+    head = read_bytes(path, HEAD) if path.is_file() else b""
     return next((each for each in READERS if each.draft and each.recognises(path, head)), None)
 
 
@@ -146,6 +162,18 @@ def own_bundle(path: Path, shown: str, trial: str = "") -> str:
     if reader is None or (draft := reader.draft) is None:
         return ""
     return _undamaged(path, reader, lambda: draft(path, shown, trial))
+
+
+def trials(path: Path) -> list[str]:
+    """The trials of a data set by name; none of anything else.
+
+    Raises:
+        CaparError: The data set is damaged, or of another version.
+    """
+    for reader in READERS if path.is_dir() else ():
+        if (names := reader.trials) and reader.recognises(path, b""):
+            return _undamaged(path, reader, lambda: names(path))
+    return []
 
 
 def _undamaged(path: Path, reader: Reader, read: Callable[[], Read]) -> Read:

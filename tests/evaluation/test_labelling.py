@@ -230,7 +230,8 @@ def test_the_command_writes_labels_and_refuses_what_does_not_fit(tmp_path: Path)
     out = tmp_path / "x"
     for arguments, wrong in (
         ([DRINKING, "-o", out, "--format", "elan", "--per-frame"], "elan has no rows by frame"),
-        ([DRINKING, "-o", out, "--format", "lerobot"], "--format lerobot takes --dataset"),
+        ([DRINKING, "-o", out, "--format", "lerobot"], "read from none: say --dataset FOLDER"),
+        ([DRINKING, "-o", out, "--dataset", out], "--format lerobot takes --dataset"),
         ([DRINKING, "-o", tmp_path / "x.eaf"], "say in which format: --format csv|"),
         ([tmp_path / "none", "-o", out], "no capture here"),
     ):

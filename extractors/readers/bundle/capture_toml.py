@@ -56,6 +56,7 @@ from extractors.readers.registry import (
     read_recording,
     reader_for,
     says_itself,
+    trials,
 )
 from extractors.readers.schema.capture import (
     CaptureFile,
@@ -101,6 +102,8 @@ def find_place(place: str | Path) -> tuple[Path, str]:
             )
         path = beside
     if not path.is_file():
+        if path.name == FILE and trials(path.parent):
+            read_recording(path.parent)  # which says what it holds, and what to write
         wanted = {".toml": path, "": path / FILE}.get(path.suffix, beside)
         raise FileError(
             text,
@@ -118,7 +121,8 @@ def takes(place: str | Path) -> list[str]:
 def place_of(file: Path, name: str) -> str:
     """Where the capture of a name is: in a file, or in the take of it that the name contains."""
     own = [each for each in takes(file) if each in name]
-    return f"{file}:{max(own, key=len)}" if own else str(file)
+    likely = max(own, key=lambda take: (name.endswith(take), len(take)), default="")
+    return f"{file}:{likely}" if own else str(file)
 
 
 def take_words(place: str | Path) -> dict[str, dict[str, str]]:
@@ -130,7 +134,27 @@ def _document(path: Path, trial: str = "") -> tuple[dict[str, Any], Location]:
     """The content of a capture.toml, or of that which a motion file itself amounts to."""
     if path.suffix != ".toml" and says_itself(path):
         return tomllib.loads(own_bundle(path, path.name, trial)), Location(path, {})
-    return read_toml(path)
+    data, location = read_toml(path)
+    return _with_episodes(data, location), location
+
+
+def _with_episodes(data: dict[str, Any], location: Location) -> dict[str, Any]:
+    """The content with each episode of a data set as a take, where it states neither."""
+    files = data.get("files")
+    if "takes" in data or not isinstance(files, dict):
+        return data
+    for name, stated in files.items():
+        table = stated if isinstance(stated, dict) else {"path": stated}
+        if "episode" in table or not isinstance(table.get("path"), str):
+            continue
+        where = location.inside("files").inside(name)
+        try:
+            folder = expanded(validated(MotionFile, {"path": table["path"]}, where), "path")
+        except FileError:  # a variable that is not set is reported where the file is read
+            continue
+        if own := trials(folder):
+            return data | {"files": files | {name: table | {"episode": "{take}"}}, "takes": own}
+    return data
 
 
 def _takes(data: dict[str, Any], location: Location) -> dict[str, dict[str, str]]:

@@ -6,20 +6,16 @@ from typing import Any
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 from capar.model import geometry
 from capar.model.capture import UNITS, Stream
 from capar.model.errors import FileError, UnknownNameError
 from extractors.readers.file_access import number_of, read_rows, read_text, source_of
 from extractors.readers.names import parents_by_names
-from extractors.readers.recording import Recording, track
+from extractors.readers.recording import ROTATIONS, Recording, quaternions_of, track
 
 OPTIONS = frozenset({"rotations"})
 """``rotations``: what RX, RY and RZ are, ``helical`` if not given."""
-
-ROTATIONS = ("helical", "euler_xyz")
-"""A vector along the axis, as long as the angle; or angles about axes that turn with the body."""
 
 PLACES = {"trajectories": ("X", "Y", "Z"), "segments": ("TX", "TY", "TZ"),
           "objects": ("TX", "TY", "TZ")}  # fmt: skip
@@ -47,7 +43,7 @@ def read(path: Path, options: Mapping[str, Any]) -> Recording:
         FileError: No section has a position, or one lacks its rate, columns or rows.
         UnknownNameError: The options name another kind of rotations.
     """
-    rotations = str(options.get("rotations", ROTATIONS[0]))
+    rotations = str(options.get("rotations", "helical"))
     if rotations not in ROTATIONS:
         raise UnknownNameError("kind of rotations", rotations, ROTATIONS, where=str(path))
     lines = read_text(path).splitlines()
@@ -135,11 +131,8 @@ class _Section:
             turns = self.table[:, [own[each] for each in TURN]]
             if "RW" in own:
                 turned = geometry.unit(np.column_stack([self.table[:, own["RW"]], turns]))
-            elif rotations == "helical":
-                turned = geometry.quaternions(Rotation.from_rotvec(turns, degrees=self.degrees))
             else:
-                angles = Rotation.from_euler("XYZ", turns, degrees=self.degrees)
-                turned = geometry.quaternions(angles)
+                turned = quaternions_of(turns, rotations, degrees=self.degrees)
             yield name, track(name, self.times, places, turned)
 
 

@@ -398,6 +398,7 @@ def _is_time(value: str) -> str:
 
 Up = Literal["z", "y", "x", "-z", "-y", "-x"]
 Order = Literal["xyzw", "wxyz"]
+Rotations = Literal["helical", "euler_xyz", "rpy"]
 UnitOrScale = Annotated[
     Annotated[Unit, Tag("as text")] | Annotated[Positive, Tag("as number")],
     Discriminator(form_of_value),
@@ -406,15 +407,27 @@ Tolerance = Annotated[float, Field(ge=0.0, lt=1.0)]
 
 
 class ArrayGroup(Entry):
-    """Arrays of an NPZ file that are the poses of bodies, or the positions of points."""
+    """Arrays of NPZ, or features of LeRobot: poses of bodies, or positions of points."""
 
     one_of: ClassVar[tuple[str, ...]] = ("names", "body")
 
-    positions: str = key("Array of positions: (frames, 3) or (frames, bodies, 3).")
+    positions: str = key(
+        "Array of positions: (frames, 3) or (frames, bodies, 3); of any array, a part of the last "
+        "axis may be named: ``state[0:3]``, of LeRobot also ``state[x,y,z]``."
+    )
     quaternions: str | None = key(
         "Array of quaternions; points without orientation have none.", None
     )
-    order: Order | None = key("Order of the quaternions' components.", None)
+    rotations: str | None = key(
+        "Array of three numbers for each orientation [rad], in place of quaternions.",
+        None,
+        apart="quaternions",
+    )
+    order: Order | Rotations | None = key(
+        "Order of the quaternions' components; or what rotations are, as the file's "
+        "``rotations`` says.",
+        None,
+    )
     names: TextOrTexts | None = key(
         "Array of the bodies' or points' names, or the names themselves.", None
     )
@@ -439,18 +452,23 @@ class MotionFile(Entry):
         "CSV, NPZ: frames a second; checked against time stamps if there are any.", None, unit="Hz"
     )
     fps: str | None = key("NPZ: array that holds the rate [Hz].", None)
-    arrays: list[ArrayGroup] | None = key("NPZ: what the arrays are.", None)
+    arrays: list[ArrayGroup] | None = key("NPZ, LeRobot: what the arrays or features are.", None)
     columns: dict[str, list[str]] | None = key(
         "CSV: the 7 columns (x y z, quaternion) or 3 columns (x y z) of each body or point.", None
     )
     order: Order | None = key("CSV: order of the quaternions' columns; xyzw.", None)
     delimiter: str | None = key("CSV: what separates cells.", None)
-    rotations: Literal["helical", "euler_xyz"] | None = key(
-        "Vicon CSV: what RX, RY and RZ are: a vector along the axis, as long as the angle, or "
-        "angles about axes that turn with the body; helical.",
+    rotations: Rotations | None = key(
+        "Vicon CSV: what RX, RY and RZ are: a vector along the axis, as long as the angle; "
+        "angles about axes that turn with the body; roll, pitch and yaw about fixed axes x, y, z; "
+        "helical.",
         None,
     )
     demo: str | None = key("HDF5: the name of the demonstration; the first if not given.", None)
+    episode: str | None = key(
+        "LeRobot: number of the episode; if neither it nor ``takes`` are given, each is a take.",
+        None,
+    )
     folder: str | None = key("JSON in a tar archive: the folder in it.", None)
     time_unit_s: Positive | None = key(
         "JSON: seconds per unit of the time stamps; 0.001.", None, unit="s"
