@@ -300,6 +300,9 @@ def _file_of(entry: Tracked, files: Files, key: str, name: str) -> str:
     }
     found = [file for file in names if name in names[file]]
     if not found:
+        if key == "body" and any(name in each.markers for each in files.values()):
+            problem = f"{name!r} is a point, which does not turn."
+            raise entry.error(key, problem, f'Write markers = ["{name}"] in place of body.')
         known = {each for group in names.values() for each in group}
         raise entry.unknown(key.removesuffix("s"), name, known, key)
     if len(found) > 1:

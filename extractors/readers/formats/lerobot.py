@@ -3,6 +3,7 @@
 import hashlib
 import json
 import math
+import re
 from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
@@ -36,7 +37,7 @@ arrays = [{{ body = "gripper", {mapping} }}]
 [[sensor]]
 name = "gripper"
 end_effector = "hand"
-body = "gripper"
+{tracked}
 """
 
 
@@ -181,22 +182,36 @@ def _described(name: str, feature: Mapping[str, Any]) -> str:
     return f"{name} {feature['dtype']} ({shape}){shown}"
 
 
+def _start(feature: Mapping[str, Any]) -> int | None:
+    """Where x, y and z may begin in a feature: by its components' names, or if it has none at 0."""
+    names = [re.split(r"[^a-z]", each.lower())[-1] for each in _components(feature)]
+    if not _numeric(feature) or feature["shape"][-1] < 3 or (names and "x" not in names):
+        return None
+    return names.index("x") if names else 0
+
+
 def _unmapped(path: Path, features: Mapping[str, Mapping[str, Any]]) -> FileError:
     """What there is, and the capture.toml that would say what of it is a pose."""
     listed = "".join(f"\n  {_described(name, each)}" for name, each in features.items())
-    wide = {n: f["shape"][-1] for n, f in features.items() if _numeric(f) and f["shape"][-1] > 2}
-    if not wide:
-        problem = f"holds no poses, which are features of three or more numbers. It has:{listed}"
-        return FileError(path, problem)
-    name = max(wide, key=lambda each: ("state" in each or "pose" in each, wide[each] > 6))
-    mapping = f'positions = "{name}[0:3]"'
-    if wide[name] > 5:
-        mapping += f', quaternions = "{name}[3:7]", order = "xyzw"'
-    if wide[name] == 6:
-        mapping = f'positions = "{name}[0:3]", rotations = "{name}[3:6]", order = "helical"'
+    starts = {name: at for name, each in features.items() if (at := _start(each)) is not None}
+    if not starts:
+        problem = "seems to hold no poses, which have x, y and z; angles of joints are none."
+        return FileError(path, problem, f"Its features:{listed}")
+    name = max(starts, key=lambda n: ("state" in n or "pose" in n, features[n]["shape"][-1]))
+    turn = starts[name] + 3
+    rest = features[name]["shape"][-1] - turn
+    mapping = f'positions = "{name}[{turn - 3}:{turn}]"'
+    if rest > 2 and "yaw" in ",".join(_components(features[name])).lower():
+        mapping += f', rotations = "{name}[{turn}:{turn + 3}]", order = "rpy"'
+    elif rest == 3:
+        mapping += f', rotations = "{name}[{turn}:{turn + 3}]", order = "helical"'
+    elif rest > 3:
+        mapping += f', quaternions = "{name}[{turn}:{turn + 4}]", order = "xyzw"'
     where = f"Say it in {path / 'capture.toml'}, like this:"
     return FileError(
         path,
         f"does not say which of its features are poses:{listed}\n{where}",
-        EXAMPLE.format(mapping=mapping),
+        EXAMPLE.format(
+            mapping=mapping, tracked='body = "gripper"' if rest > 2 else 'markers = ["gripper"]'
+        ),
     )

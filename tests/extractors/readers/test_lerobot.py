@@ -242,6 +242,34 @@ def test_what_a_data_set_without_a_mapping_says_to_write_is_read(tmp_path: Path)
     assert read_capture(f"{robot}:2").sensors[0].name == "gripper"
 
 
+@pytest.mark.parametrize(
+    ("names", "order"),
+    [
+        ("gripper,eef.x,eef.y,eef.z,roll,pitch,yaw,gripper", "rpy"),
+        ("x,y,z,rx,ry,rz", "helical"),
+        ("", "helical"),
+        ("time,x,y,z", ""),
+    ],
+)
+def test_what_it_says_to_write_goes_by_the_names_of_components(
+    names: str, order: str, tmp_path: Path
+) -> None:
+    before = len(names.split("x,", maxsplit=1)[0].split(",")) - 1
+    columns = [np.ones((samples.FRAMES, before)), samples.PLACES]
+    columns += [ORDERS["rpy" if order == "rpy" else "helical"]] if order else []
+    columns += [np.ones((samples.FRAMES, 1))] if order == "rpy" else []
+    values = {"observation.pose": np.column_stack(columns), "action": np.ones((12, 9))}
+    stated = {"observation.pose": names.split(",") if names else None}
+    robot = motion_data(tmp_path / "robot", [values], names=stated)
+    said = told("observe", robot, folder=tmp_path)
+    (robot / "capture.toml").write_text(said.partition("like this:")[2])
+    body = read_capture(f"{robot}:0").sensors[0].stream
+    assert np.allclose(body.positions, samples.PLACES, atol=1e-6)
+    turns = {"rpy": tilted, "helical": samples.TURNS, "": Rotation.identity(12)}[order]
+    apart = geometry.angle_between(body.orientations, turns.as_quat(scalar_first=True))
+    assert np.degrees(apart).max() < 1e-3
+
+
 def test_a_mistake_is_named_with_what_would_be_right(tmp_path: Path) -> None:
     def mapped(right: str, wrong: str) -> Any:
         return lambda robot: (robot / "capture.toml").write_text(MAPPING.replace(right, wrong))
@@ -266,6 +294,8 @@ def test_a_mistake_is_named_with_what_would_be_right(tmp_path: Path) -> None:
         (mapped("[0:3]", "[0:3"), r"a part is named like observation.state\[0:3\]"),
         (mapped("[0:3]", "[0:2]"), r"observation.state\[0:2\] is float32 \(12, 2\) where"),
         (mapped("state[0:3]", "image"), r"image video \(480, 640, 3\) holds no numbers"),
+        (mapped('quaternions = "observation.state[qx,qy,qz,qw]"', ""),
+         r"capture.toml:\d+: 'hand' is a point, .* Write markers = \[\"hand\"\] in place of body"),
         (mapped('"xyzw"', '"rpy"'), "no order of quaternions 'rpy'; there are: wxyz, xyzw"),
         (mapped("up =", 'takes = ["0"]\nup ='), "holds 3 episodes, and none is named"),
         (mapped('"."', '"."\nepisode = 3'), "episode = 3 is not a text in quotes"),
@@ -290,11 +320,15 @@ def test_a_mistake_is_named_with_what_would_be_right(tmp_path: Path) -> None:
         said = " ".join(told("observe", place, folder=tmp_path).split())
         assert re.search(message, said), f"{message}: {said}"
     assert "no take '9'; there are: 0, 1, 2" in told("observe", f"{robot}:9", folder=tmp_path)
-    films = episodes(tmp_path / "films")
-    info(features=video)(films)
-    (films / "capture.toml").unlink()
-    said = told("observe", films, folder=tmp_path)
-    assert "holds no poses" in said and "observation.image video (480, 640, 3)" in said
+    joints = {"dtype": "float32", "shape": [6], "names": ["shoulder_pan.pos", *"bcdef"]}
+    for number, features in enumerate((video, {**video, "observation.state": joints})):
+        films = episodes(tmp_path / f"films_{number}")
+        info(features=features)(films)
+        (films / "capture.toml").unlink()
+        said = told("observe", films, folder=tmp_path)
+        assert "seems to hold no poses" in said
+        assert "observation.image video (480, 640, 3)" in said
+        assert ("observation.state float32 (6) [shoulder_pan.pos,b" in said) == (number == 1)
 
 
 def test_without_pyarrow_the_message_says_what_to_install(
