@@ -41,7 +41,7 @@ from extractors.readers.bundle.bodies import (
     to_world,
 )
 from extractors.readers.bundle.shapes import Frame, WorldPose, build_shape, under_object
-from extractors.readers.file_access import neighbours, source_of
+from extractors.readers.file_access import check_file, neighbours, source_of
 from extractors.readers.names import (
     WHOLES,
     constant_name,
@@ -152,6 +152,8 @@ def _with_episodes(data: dict[str, Any], location: Location) -> dict[str, Any]:
             folder = expanded(validated(MotionFile, {"path": table["path"]}, where), "path")
         except FileError:  # a variable that is not set is reported where the file is read
             continue
+        if "arrays" in table and not folder.suffix and not folder.exists():
+            check_file(folder)  # a data set that is missing has no takes to name
         if own := trials(folder):
             return data | {"files": files | {name: table | {"episode": "{take}"}}, "takes": own}
     return data

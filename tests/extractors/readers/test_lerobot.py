@@ -299,6 +299,7 @@ def test_a_mistake_is_named_with_what_would_be_right(tmp_path: Path) -> None:
         (mapped('"xyzw"', '"rpy"'), "no order of quaternions 'rpy'; there are: wxyz, xyzw"),
         (mapped("up =", 'takes = ["0"]\nup ='), "holds 3 episodes, and none is named"),
         (mapped('"."', '"."\nepisode = 3'), "episode = 3 is not a text in quotes"),
+        (mapped('"."', '"nowhere"'), "nowhere: no such file. The folder .* holds: .* meta"),
         (mapped('path = "."', 'path = "."\nepisode = "7"'), "no episode '7'; there are: 0, 1, 2"),
         (info(codebase_version="v2.1"), "of v2.1; v3.0 is read. .*convert_dataset_v21_to_v30"),
         (info(codebase_version="v4.0"), "of v4.0; v3.0 is read.$"),
