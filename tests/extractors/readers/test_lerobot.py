@@ -18,7 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from robot_data import demo_data, motion_data
 from scipy.spatial.transform import Rotation
-from shell import run
+from shell import refused, run
 
 import capar
 from capar.model import geometry
@@ -119,6 +119,10 @@ def test_labels_of_all_episodes_go_into_a_copy_of_the_data_set_they_are_read_fro
         assert starts == pytest.approx([each.start_s for each in wanted], abs=1.0 / 100)
     before, after = read_capture(f"{robot}:1"), read_capture(f"{tmp_path}/labelled:1")
     assert before.sources[1:] == after.sources[1:]
+    toml = robot / "capture.toml"
+    toml.write_text(f"from_s = 0.5\n{toml.read_text()}")
+    words = ("label", f"{robot}:*", "--format", "lerobot", "-o", tmp_path / "late")
+    assert "labels count from the first frame" in refused(*words)
 
 
 ORDERS = {
