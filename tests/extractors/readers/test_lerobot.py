@@ -122,7 +122,7 @@ def test_labels_of_all_episodes_go_into_a_copy_of_the_data_set_they_are_read_fro
     toml = robot / "capture.toml"
     toml.write_text(f"from_s = 0.5\n{toml.read_text()}")
     words = ("label", f"{robot}:*", "--format", "lerobot", "-o", tmp_path / "late")
-    assert "labels count from the first frame" in refused(*words)
+    assert "labels count from an episode's first frame" in refused(*words)
 
 
 ORDERS = {
