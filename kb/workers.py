@@ -317,6 +317,8 @@ _SLOW = f"this takes long, as do {MOST_ASIDE} others that are being answered"
 def _nursery() -> None:
     """Fork a process for each channel that comes, until the server is gone; then end them all."""
     control = socket.socket(fileno=os.dup(sys.stdin.fileno()))
+    # Else those that are forked hold the channel open, and the server awaits a killed nursery.
+    os.dup2(os.open(os.devnull, os.O_RDONLY), sys.stdin.fileno())
     size = int.from_bytes(control.recv(8, socket.MSG_WAITALL))
     begin, seconds = pickle.loads(control.recv(size, socket.MSG_WAITALL))
     gc.freeze()  # or each process would copy what the collector touches
