@@ -1,6 +1,7 @@
 """Changes of a store: its schema version, its ontology, and observations replaced whole."""
 
 from collections.abc import Iterable
+from functools import cache
 
 from pyoxigraph import Literal, NamedNode, Quad
 
@@ -75,6 +76,7 @@ def ontology_digest() -> Quad:
     return Quad(ONTOLOGY, CAPAR.sha256, Literal(ontology_files.digest()), ONTOLOGY)
 
 
+@cache
 def ontology_replacement() -> str:
     """The update that gives a store the present ontology and schema version."""
     stated = [Quad(s, p, o, ONTOLOGY) for s, p, o in ontology_files.ontology()]
