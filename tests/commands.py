@@ -2,9 +2,10 @@
 
 Each has its own folder, environment, outputs and exit code, and `capar.cli.main` runs in it as the
 script `capar` runs it; what it need not do is import the same libraries again. Tests of starting,
-of signals, of rights and of closed outputs start the script itself.
+of signals, of full disks and of closed outputs start the script itself.
 """
 
+import ctypes
 import io
 import multiprocessing
 import os
@@ -52,6 +53,7 @@ def capar(
     cwd: Path,
     environment: Mapping[str, str] | None = None,
     together: bool = False,
+    ordinary: bool = False,
 ) -> Done:
     """Run a command of the command line.
 
@@ -60,12 +62,13 @@ def capar(
         cwd: The folder in which it runs.
         environment: The whole environment; if None, this one without settings of ours.
         together: Whether errors go to the standard output too.
+        ordinary: Whether it has no more rights to files than who owns them.
     """
     env = dict(clean_environment() if environment is None else environment)
     with TemporaryDirectory() as folder:
         out = Path(folder) / "out"
         errors = out if together else Path(folder) / "errors"
-        told = (list(map(str, arguments)), str(cwd), env, str(out), str(errors))
+        told = (list(map(str, arguments)), str(cwd), env, str(out), str(errors), ordinary)
         process = _context().Process(target=_command, args=told)
         process.start()
         process.join()
@@ -87,11 +90,14 @@ def _command(
     environment: Mapping[str, str],
     out: str,
     errors: str,
+    ordinary: bool,
 ) -> None:
     """Be the command: what `capar` does, with its own outputs, folder and environment."""
     from capar.cli import main
 
     _redirect(out, errors)
+    if ordinary:
+        _drop_overrides()
     os.environ.clear()
     os.environ.update(environment)
     os.chdir(cwd)
@@ -101,6 +107,22 @@ def _command(
     finally:
         sys.stdout.flush()
         sys.stderr.flush()
+
+
+_OVERRIDES = (1, 2)
+"""CAP_DAC_OVERRIDE and CAP_DAC_READ_SEARCH: by them an administrator needs no rights to files."""
+
+
+def _drop_overrides() -> None:
+    """Be an administrator no more in what concerns files; for others there is nothing to drop."""
+    libc = ctypes.CDLL(None)
+    header, sets = (ctypes.c_uint32 * 2)(0x20080522, 0), (ctypes.c_uint32 * 6)()
+    assert libc.capget(header, sets) == 0
+    for each in _OVERRIDES:
+        libc.prctl(24, each, 0, 0, 0)  # those of what it starts, which fails for who has none
+        for effective_or_permitted in (0, 1):
+            sets[effective_or_permitted] &= ~(1 << each)
+    assert libc.capset(header, sets) == 0
 
 
 def _redirect(out: str, errors: str) -> None:

@@ -2,14 +2,18 @@
 
 import gc
 import signal
+import sys
 from pathlib import Path
 
 import pytest
+from combinations import EVERY
 from hypothesis import settings
 from motion_files import recordings_folder
 
 # The same examples every time: what a build says depends on the code alone.
-settings.register_profile("patient", deadline=None, derandomize=True)
+settings.register_profile(
+    "patient", deadline=None, derandomize=True, max_examples=100 if EVERY else 25
+)
 settings.load_profile("patient")
 
 # In the background of a shell Ctrl-C is ignored, by all that is started from there too.
@@ -28,6 +32,15 @@ def pytest_collection_finish() -> None:
     """Spare the garbage collector the modules and thousands of tests, which stay to the end."""
     gc.collect()
     gc.freeze()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def performances(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """What virtual bodies perform is performed once for all workers."""
+    if actions := sys.modules.get("capar.body.scripted_actions"):
+        from observed import performed
+
+        vars(actions)["perform"] = performed(tmp_path_factory)
 
 
 @pytest.fixture

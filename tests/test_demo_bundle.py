@@ -1,6 +1,5 @@
 """The capture that ships is what a command writes, and shows what was published."""
 
-import json
 from importlib import resources
 from pathlib import Path
 
@@ -64,15 +63,11 @@ def test_the_head_looks_at_the_mug_before_the_hand_has_it() -> None:
     assert "mug" in {each.object for each in during}
 
 
-def test_live_it_ends_in_what_observing_it_gives() -> None:
-    live = run("observe", "--live", DEMO, "--speed", "0", "--json").splitlines()
-    assert json.loads(live[-1])["observation"] == json.loads(run("observe", DEMO, "--json"))
-
-
 @pytest.mark.long
-def test_man_woman_and_child_do_it_again_with_every_gate() -> None:
-    trips = list(round_trips(observed_source(DEMO), ("man", "woman", "child")))
+def test_man_and_child_do_it_again_with_every_gate() -> None:
+    """So does a woman, by the command of docs/body.md (test_readme.py)."""
+    trips = list(round_trips(observed_source(DEMO), ("man", "child")))
     assert [(each.agent, each.refused, each.failed) for each in trips] == [
-        (who, "", ()) for who in ("man", "woman", "child")
+        (who, "", ()) for who in ("man", "child")
     ]
     assert all(each.passed for each in trips)

@@ -53,14 +53,33 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
+WRITTEN: dict[str, tuple[Path, list[Path]]] = {}
+"""Where each command without an Actionary wrote what: on another page it would write the same."""
+
+
+def run(command: str, folder: Path) -> None:
+    """Run a command, or copy what it wrote on an earlier page."""
+    capar_, name, *arguments = shlex.split(command)
+    assert capar_ == "capar"
+    if command in WRITTEN:
+        earlier, written = WRITTEN[command]
+        for path in written:
+            copy = folder / path.relative_to(earlier)
+            copy.mkdir() if path.is_dir() else shutil.copy(path, copy)
+        return
+    before = {*folder.rglob("*")}
+    done = capar(name, *arguments, cwd=folder)
+    assert done.returncode == 0, f"{command}\n{done.stderr}"
+    assert name != "roundtrip" or done.stdout.endswith("1 asked, 1 in reach, 1 passed\n")
+    if "--actionary" not in arguments:
+        WRITTEN[command] = folder, sorted({*folder.rglob("*")} - before)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("page", WITH_COMMANDS, ids=lambda page: page.stem)
 def test_every_command_of_a_page_runs(page: Path, folder: Path) -> None:
     for command in commands(page):
-        name, *arguments = shlex.split(command)
-        assert name == "capar"
-        done = capar(*arguments, cwd=folder)
-        assert done.returncode == 0, f"{command}\n{done.stderr}"
+        run(command, folder)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 import pytest
+from combinations import EVERY
 from scipy.spatial.transform import Rotation
 from typer.testing import CliRunner
 from virtual_bodies.drinking import steps_of
@@ -54,6 +55,8 @@ from capar.cli import app
 from capar.model.capture import Capture, Stream, TagType
 from capar.model.errors import UnknownNameError
 from capar.pipelines.observation import observe
+
+pytestmark = pytest.mark.long
 
 ON_THE_MARKS = (np.zeros(3), 0.0)
 
@@ -133,7 +136,7 @@ def test_what_cannot_be_calibrated_is_said() -> None:
     assert len(places()) == 11
 
 
-@pytest.fixture(scope="module", params=[0.97, 1.03])
+@pytest.fixture(scope="module", params=[0.97, 1.03] if EVERY else [1.03])
 def wrong_arms(request: pytest.FixtureRequest) -> tuple[Trial, Fit, tuple[Measures, Calibration]]:
     """A body whose arms were guessed 3 % off, fitted, and what its motion says."""
     trial = virtual_trial(seconds=4.0)
@@ -180,7 +183,7 @@ def touching() -> Performed:
     """A man touches a crate, all eleven sensors on."""
     human = Human.of(ready_made("man"))
     crate = Thing("crate", box(0.15, 0.20, 0.15), (0.42, 0.10, 0.91))
-    made = perform(human, scene(table(0.91, near_m=0.23), crate), touch("crate"), rate_hz=60.0)
+    made = perform(human, scene(table(0.91, near_m=0.23), crate), touch("crate"), rate_hz=30.0)
     return made, record(made, name="touches", seed=2, sensors=tuple(places()))
 
 
@@ -202,6 +205,8 @@ def test_a_performers_capture_is_fitted_back_to_its_motion(touching: Performed) 
 def test_the_command_says_what_is_left(touching: Performed, tmp_path: Path) -> None:
     made, capture = touching
     write_bundle(capture, truth_of(made), tmp_path / "touches")
+    about = tmp_path / "touches" / "capture.toml"
+    about.write_text(f"to_s = 1.0\n{about.read_text()}")
     told = CliRunner().invoke(app, ["fit", str(tmp_path / "touches")])
     assert told.exit_code == 0, told.output
     assert "right_elbow" in told.output
@@ -247,7 +252,8 @@ WORN = ("right_hand", "left_hand", "head", "neck", "l5", "right_elbow", "left_el
 @cache
 def stated() -> Capture:
     """Somebody who sips, with the shapes that a careful recording states."""
-    return record(performed("sip"), name="sip", seed=3, tracker=PERFECT, sensors=WORN)
+    done = performed("sip", rate_hz=30.0)
+    return record(done, name="sip", seed=3, tracker=PERFECT, sensors=WORN)
 
 
 @cache

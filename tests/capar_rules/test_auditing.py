@@ -1,7 +1,6 @@
 """The audit: shipped rules are clean, and what is wrong with others is found."""
 
 from functools import cache
-from pathlib import Path
 
 import pytest
 
@@ -41,18 +40,16 @@ def test_every_case_that_the_published_rules_leave_has_one_reason():
     assert all(len(reason.split()) > 5 for _, reason in shipped.excused)
 
 
-def test_two_names_without_order_are_ambiguous(tmp_path: Path):
-    rules = tmp_path / "grasp.lp"
-    rules.write_text('primitive("Grasp").\nfeature_row("Grasp", any, "1", "1", "0", "0").\n')
+def test_two_names_without_order_are_ambiguous_and_what_no_body_can_do_is_never_fitted(tmp_path):
+    """A thing that is possessed throughout cannot come to be touched within the segment."""
+    rules = tmp_path / "added.lp"
+    rules.write_text(
+        'primitive("Grasp").\nfeature_row("Grasp", any, "1", "1", "0", "0").\n'
+        'primitive("Odd").\nfeature_row("Odd", any, "101", "010", "00", "00").\n'
+    )
     found = audit(profile("thesis", added=(rules,)))
     (clash,) = found.ambiguous
     assert (clash.first, clash.second) == ("Grasp", "Touch")
     assert clash.features == (("1", "1", "0", "0"),)
     assert not found.clean
-
-
-def test_what_no_body_can_do_is_never_fitted(tmp_path: Path):
-    """A thing that is possessed throughout cannot come to be touched within the segment."""
-    rules = tmp_path / "odd.lp"
-    rules.write_text('primitive("Odd").\nfeature_row("Odd", any, "101", "010", "00", "00").\n')
-    assert audit(profile("thesis", added=(rules,))).unreachable == ("Odd",)
+    assert found.unreachable == ("Odd",)

@@ -206,7 +206,7 @@ def test_names_that_may_share_a_segment_are_refused_until_they_are_ordered(unloa
     assert {"Carry", "Lift", "Slide"} <= {*first}
     assert not {"MoveObj", "Reach", "Touch"} & {*first}
     assert errors(check(added)) == ()
-    audited = audit(profile("extended", added=(added,)))
+    audited = audit(profile("thesis", added=(added,)))
     assert (audited.unchecked, audited.clean) == (("Unload",), True)
 
 

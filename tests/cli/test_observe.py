@@ -144,7 +144,7 @@ def test_what_cannot_be_done_is_refused_before_anything_is_computed(
 def test_a_fitted_body_changes_nothing_where_its_parts_are_stated() -> None:
     shutil.copytree(DRINKING, "drunk")
     about = Path("drunk/capture.toml")
-    about.write_text(f"to_s = 1.2\n{about.read_text()}")
+    about.write_text(f"to_s = 0.7\n{about.read_text()}")
     assert run("observe", "drunk", "--fit") == run("observe", "drunk")
 
 

@@ -3,7 +3,6 @@
 What a command writes is there whole or not at all.
 """
 
-import ctypes
 import errno
 import os
 import resource
@@ -17,6 +16,7 @@ from pathlib import Path
 
 import pytest
 from bundles import DRINKING
+from commands import capar
 
 from capar.cli.output import REMEDIES, error_message, written
 
@@ -26,24 +26,6 @@ primitive("Sip").
 feature_row("Sip", any, "111", "111", "11", "00").
 verb("Sip", "sip").
 """
-_OVERRIDES = (1, 2)
-"""CAP_DAC_OVERRIDE and CAP_DAC_READ_SEARCH: by them an administrator needs no rights to files."""
-
-
-def without_overrides() -> None:
-    """Be an administrator no more in what concerns files; for others there is nothing to drop."""
-    if os.geteuid() == 0:
-        libc = ctypes.CDLL(None, use_errno=True)
-        for each in _OVERRIDES:
-            assert libc.prctl(24, each, 0, 0, 0) == 0, os.strerror(ctypes.get_errno())
-
-
-def capar(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    environment = {key: value for key, value in os.environ.items() if not key.startswith("CAPAR_")}
-    return subprocess.run(
-        [str(CAPAR), *map(str, arguments)], cwd=cwd, env=environment, capture_output=True,
-        text=True, check=False, preexec_fn=without_overrides,
-    )  # fmt: skip
 
 
 @pytest.fixture
@@ -84,7 +66,7 @@ FAULTS = (
 @pytest.mark.parametrize(("arguments", "where", "what"), FAULTS)
 def test_what_cannot_be_used_is_named_and_ends_with_two(closed, arguments, where, what):
     before = sorted(closed.rglob("*.*"))
-    done = capar(*arguments, cwd=closed)
+    done = capar(*arguments, cwd=closed, ordinary=True)
     assert done.returncode == 2, done.stderr
     assert "Traceback" not in done.stderr
     assert where in done.stderr

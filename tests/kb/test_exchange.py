@@ -20,6 +20,8 @@ from kb.exchange import FORMATS, bring_in, export, format_of, misplaced, read
 from kb.store import names, statements
 from kb.store.statements import LiteralError
 
+pytestmark = pytest.mark.long
+
 PREPOSITIONS = (("away from", "mug", "table"), ("on", "mug", "table"), ("up", "mug", "mug"))
 
 

@@ -64,7 +64,8 @@ def test_several_processes_keep_what_one_keeps_and_in_its_order(
     for jobs in (1, 2):
         place = tmp_path / f"by_{jobs}"
         seen[jobs] = [
-            each.observation for each in observe_many([study], jobs=jobs, actionary=place)
+            each.observation
+            for each in observe_many([f"{study}/c[0-2]"], jobs=jobs, actionary=place)
         ]
     assert seen[1] == seen[2]
     assert seen[1][0] == observe(study / "c0")
@@ -124,7 +125,8 @@ def test_a_dask_cluster_keeps_what_one_process_keeps(
 ) -> None:
     distributed = pytest.importorskip("distributed", reason="pip install 'capar[cluster]'")
     monkeypatch.chdir(study.parent)  # places may be relative, and workers elsewhere
-    seen = [each.observation for each in observe_many(["study"], actionary=tmp_path / "one")]
+    three = ["study/c[0-2]"]
+    seen = [each.observation for each in observe_many(three, actionary=tmp_path / "one")]
     monkeypatch.chdir(tmp_path)
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path)
@@ -132,8 +134,8 @@ def test_a_dask_cluster_keeps_what_one_process_keeps(
         address = cluster.scheduler_address
         monkeypatch.chdir(study.parent)
         by = {"scheduler": address, "actionary": tmp_path / "cluster"}
-        assert [each.observation for each in observe_many(["study"], **by)] == seen
-        again = [each.known for each in observe_many(["study"], **by)]
+        assert [each.observation for each in observe_many(three, **by)] == seen
+        again = [each.known for each in observe_many(three, **by)]
     assert again == [each.capture for each in seen if each]
     assert content(tmp_path / "cluster") == content(tmp_path / "one")
 

@@ -6,7 +6,7 @@ from recorded_actions import good_trip, recorded
 from scipy.spatial.transform import RigidTransform
 
 from capar.pipelines.round_trips import body
-from capar.regeneration import PlanError
+from capar.regeneration import PlanError, search
 from capar.regeneration.holds import Hold, co_held_of
 from capar.regeneration.scenes import moved, raised, resized_with
 from capar.regeneration.search import reachable
@@ -39,7 +39,11 @@ def test_another_body_carries_both_and_neither_slides_in_its_hand(agent: str) ->
     assert {grip.hold.thing for grip in trip.motion.plan.grips} == {"carton", "tin"}
 
 
-def test_a_hand_that_is_too_small_for_both_is_refused_with_what_would_do() -> None:
+def test_a_hand_that_is_too_small_for_both_is_refused_with_what_would_do(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(search, "STEPS_M", ())
+    monkeypatch.setattr(search, "HIGHER_M", (0.1,))
     source = recorded("carry_two")
     large = resized_with(source.scene, "carton", 3.0)
     with pytest.raises(PlanError, match=r"too small to hold 'tin' .* of 0.7 times the size would"):

@@ -14,10 +14,12 @@ from capar.model.errors import CaparError, UnknownNameError
 from capar.pipelines.observation import observe
 from capar.pipelines.round_trips import bodies, observed_joint_source
 from capar.pipelines.trials import trial_of
-from capar.regeneration import PlanError
+from capar.regeneration import PlanError, hand_overs
 from capar.regeneration.captures import joint_capture_of
 from capar.regeneration.hand_overs import JointMotion, JointSource, joint_gates, regenerate_together
 from capar.regeneration.scenes import read_scenes
+
+pytestmark = pytest.mark.long
 
 RATE_HZ = 30.0
 
@@ -54,7 +56,10 @@ def test_other_bodies_hand_it_over_with_every_gate_and_the_same_is_observed(
     assert again.relations == made.source.observation.complex_par.relations
 
 
-def test_bodies_that_are_too_far_apart_are_refused_with_what_would_do(tmp_path: Path) -> None:
+def test_bodies_that_are_too_far_apart_are_refused_with_what_would_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hand_overs, "MOST_TURNS", 2)
     source = _source()
     path = tmp_path / "far.toml"
     path.write_text("[stance.taker]\nplace = [3.4, 0.0]\n")

@@ -125,7 +125,10 @@ def test_a_spoilt_motion_does_not_pass(spoilt: object, gate: str) -> None:
     assert gate in quality(spoilt(motion)).failed
 
 
-def test_out_of_reach_is_decided_before_anything_moves_with_what_would_help() -> None:
+def test_out_of_reach_is_decided_before_anything_moves_with_what_would_help(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(search, "NEARER_M", (0.05, 0.2))
     source = recorded("touch")
     scene = replace(source.scene, place=(-0.9, 0.0), stays=True)
     with pytest.raises(PlanError, match=r"misses by \d+ mm.*; standing \d\.\d\d m further ahead"):

@@ -107,5 +107,6 @@ def test_what_a_child_cannot_throw_is_refused_with_what_fails_and_what_would_do(
 ) -> None:
     scene, child = raised(recorded("toss").scene, "table", 0.5), body("child", recorded("toss"))
     monkeypatch.setattr(search, "STEPS_M", ())
+    monkeypatch.setattr(search, "HIGHER_M", (0.1, -0.4))
     with pytest.raises(PlanError, match=r"cannot throw 'mug' .*misses by \d+ mm; .*lower would do"):
         reachable(recorded("toss"), scene, child)

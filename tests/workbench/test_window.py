@@ -17,6 +17,8 @@ from capar.workbench.know import Know
 from capar.workbench.opening import open_window
 from capar.workbench.window import Settings, Window
 
+pytestmark = pytest.mark.long
+
 EVIL = "<img src=x onerror=alert(1)>"
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import demonstration_files
 import motion_files as samples
 import pytest
+from combinations import EVERY
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -32,7 +33,7 @@ EDITS = st.lists(
 FILES = {**samples.WRITERS, "hdf5": ("m.hdf5", demonstration_files.write)}
 WORDS = sorted({name for kind in TABLES.values() for name in kind.model_fields})
 QUICK = settings(
-    max_examples=60,
+    max_examples=60 if EVERY else 20,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
@@ -124,7 +125,7 @@ def test_the_capture_toml_to_be_damaged_is_right(tmp_path: Path) -> None:
     assert len(read_capture(f"{tmp_path}:m").objects) == 2
 
 
-@settings(QUICK, max_examples=300)
+@settings(QUICK, max_examples=300 if EVERY else 100)
 @given(edits=EDITS)
 def test_a_damaged_capture_toml_raises_nothing_but_our_own_errors(
     edits: list[tuple[float, str, bytes]], tmp_path: Path
@@ -145,7 +146,7 @@ VALUES = st.recursive(
 )
 
 
-@settings(QUICK, max_examples=300)
+@settings(QUICK, max_examples=300 if EVERY else 100)
 @given(path=st.lists(st.integers(0, 20), min_size=1, max_size=5), value=VALUES)
 def test_a_value_of_any_type_anywhere_is_read_or_told_with_its_line(
     path: list[int], value: object
