@@ -1,7 +1,7 @@
 """From sensors to motion: inverse kinematics, residuals, and limb lengths from the motion."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import mink
@@ -384,9 +384,11 @@ class _Estimate:
 
     def step(self) -> Float[np.ndarray, "parameters parameters"]:
         """One Gauss-Newton step with the postures eliminated; returns the covariance."""
-        human = mounted(Human.of(self.measures), self.mounts)
-        shapes = self._by_measure(human)
-        schur, pull = self._priors()
+        usual = Human.of(self.measures)
+        longer = [Human.of(_longer(self.measures, {name: DELTA_M})) for name in FREE]
+        human = mounted(usual, self.mounts)
+        shapes = self._by_measure(human, longer)
+        schur, pull = self._priors(usual, longer)
         kept = []
         for sample in range(len(self.frames)):
             rest, by_posture, by_other = self._frame(human, sample, shapes)
@@ -440,7 +442,7 @@ class _Estimate:
             by_other[rows.start : rows.start + 3, : len(FREE)] = shapes[place][sample] / NOISE_M
         return rest, by_posture, by_other
 
-    def _priors(self) -> tuple[np.ndarray, np.ndarray]:
+    def _priors(self, usual: Human, longer: Sequence[Human]) -> tuple[np.ndarray, np.ndarray]:
         """What is known beforehand: measures by survey or tape, sensors near their places."""
         free, size = len(FREE), len(FREE) + 6 * len(self.targets)
         matrix = np.zeros((free + 3 * len(self.targets), size))
@@ -449,15 +451,15 @@ class _Estimate:
             matrix[number, number] = 1.0 / self.prior.deviations[name]
             rest[number] = self.measures[name] - self.prior[name]
             rest[number] /= self.prior.deviations[name]
-        moves = [_nominal(_longer(self.measures, {name: DELTA_M})) for name in FREE]
-        usual, turns = _nominal(self.measures), np.zeros(size)
+        moves, turns = [_nominal(each) for each in longer], np.zeros(size)
+        nominal = _nominal(usual)
         for number, place in enumerate(self.targets):
             rows = slice(free + 3 * number, free + 3 * number + 3)
             column = free + 6 * number
             matrix[rows, column : column + 3] = np.eye(3) / PLACEMENT_M
             for n, moved in enumerate(moves):
-                matrix[rows, n] = -(moved[place] - usual[place]) / DELTA_M / PLACEMENT_M
-            rest[rows] = (self.mounts[place].pose.translation - usual[place]) / PLACEMENT_M
+                matrix[rows, n] = -(moved[place] - nominal[place]) / DELTA_M / PLACEMENT_M
+            rest[rows] = (self.mounts[place].pose.translation - nominal[place]) / PLACEMENT_M
             turns[column + 3 : column + 6] = 1e-6
         return matrix.T @ matrix + np.diag(turns), matrix.T @ rest
 
@@ -470,26 +472,22 @@ class _Estimate:
             pose = RigidTransform.from_components(spot, turn)
             self.mounts[place] = Mount(place, places()[place], pose)
 
-    def _by_measure(self, human: Human) -> dict[str, Float[np.ndarray, "samples 3 measures"]]:
+    def _by_measure(
+        self, human: Human, longer: Sequence[Human]
+    ) -> dict[str, Float[np.ndarray, "samples 3 measures"]]:
         """Change of every sensor's place with every measure, by place."""
         sites = {place: f"sensor_{place}" for place in self.mounts}
         base = human.sites(self.postures, sites.values())
-        moved = [
-            mounted(Human.of(_longer(self.measures, {name: DELTA_M})), self.mounts).sites(
-                self.postures, sites.values()
-            )
-            for name in FREE
-        ]
+        moved = [mounted(each, self.mounts).sites(self.postures, sites.values()) for each in longer]
         return {
             place: np.stack([(each[site][0] - base[site][0]) / DELTA_M for each in moved], axis=2)
             for place, site in sites.items()
         }
 
 
-def _nominal(measures: Measures) -> dict[str, np.ndarray]:
+def _nominal(human: Human) -> dict[str, np.ndarray]:
     """Nominal places of the sensors in their segments [m]."""
-    model = Human.of(measures).model
-    return {place: np.array(model.site(f"sensor_{place}").pos) for place in places()}
+    return {place: np.array(human.model.site(f"sensor_{place}").pos) for place in places()}
 
 
 def _longer(measures: Measures, by_m: Mapping[str, float]) -> Measures:
