@@ -36,7 +36,7 @@ CAPTURES: dict[str, Callable[[], Capture]] = {
     "box carried": lambda: trial_of(
         f"{EXAMPLES}/omomo_intermimic/largebox_hands.toml:sub3_largebox_003"
     ),
-    "drinking on and on": lambda: repeated(trial_of(DRINKING), 2),
+    "drinking on and on": lambda: repeated(trial_of(DRINKING), 3),
 }
 
 
