@@ -28,6 +28,11 @@ def meeting(
     ]
 
 
+def one_of(cases: Sequence[Any]) -> Sequence[Any]:
+    """The last of some cases, which stands for the others; each, if so asked."""
+    return cases if EVERY else cases[-1:]
+
+
 def in_turn(recorded: Sequence[tuple[Any, ...]], cases: Sequence[tuple[Any, ...]]) -> list[Any]:
     """Each case as it is recorded in one way, which take turns; each in all, if so asked."""
     return [

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from combinations import one_of
 from recorded_actions import good_trip, recorded
 from scipy.spatial.transform import RigidTransform
 
@@ -24,7 +25,7 @@ def test_two_things_in_one_palm_are_observed_as_held_by_one_hand() -> None:
     assert (companion.hold.thing, companion.lead.thing) == ("tin", "carton")
 
 
-@pytest.mark.parametrize("agent", ["woman", "child"])
+@pytest.mark.parametrize("agent", one_of(["woman", "child"]))
 def test_another_body_carries_both_and_neither_slides_in_its_hand(agent: str) -> None:
     source = recorded("carry_two")
     scene = resized_with(raised(source.scene, "table", -0.1), "carton", 1.2)

@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from combinations import one_of
 from recorded_actions import recorded
 from scipy.spatial.transform import RigidTransform
 
@@ -36,7 +37,7 @@ def test_a_recording_says_from_which_hand_to_which_it_flies() -> None:
     assert (throwing.last, catching.first) == (toss.first, toss.last)
 
 
-@pytest.mark.parametrize("agent", ["man", "woman", "child"])
+@pytest.mark.parametrize("agent", one_of(["man", "woman", "child"]))
 def test_other_bodies_throw_and_catch_it_with_every_gate_and_the_same_is_observed(
     agent: str,
 ) -> None:

@@ -25,7 +25,7 @@ SCENES = {
 }
 """The scenes of all batteries, each under its battery's name and its own."""
 
-EVERY = 1 if ALL else 16
+EVERY = 1 if ALL else 32
 """Of the scenes, which do not change any more, tests of their soundness take one in so many.
 
 `CAPAR_SCENES=all pytest tests/scenes` takes each, as whoever writes a scene or a builder does.
