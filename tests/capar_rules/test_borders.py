@@ -204,6 +204,17 @@ def test_lost_contact_does_not_change_the_steps(
     assert cut != whole
 
 
+def test_what_a_hand_brushes_as_it_lets_go_does_not_change_the_name_of_its_hold() -> None:
+    mug_on_box = touches((200, 399), body="mug", other="box")
+    hold = (*SCENE, Tag("box", "mobile"), *touches((50, 300)), *mug_on_box, Moving("mug", 100, 180))
+    brush = touches((305, 330), other="box")
+    (alone,), (beside,) = (infer((*hold, *more), profile=profile()).links for more in ((), brush))
+    names = [each.name for each in alone.segments]
+    assert names == ["Reach", "Touch", "MoveObj", "Touch", "TouchWith", "ResumePosture"]
+    assert [each.name for each in beside.segments] == [*names[:5], "Withdraw", names[5]]
+    assert beside.segments[4].features == alone.segments[4].features
+
+
 def test_it_can_be_switched_off_and_is_off_in_the_thesis() -> None:
     assert profile().steady
     assert not profile("thesis").steady
