@@ -241,7 +241,8 @@ def _shaded(
     colour: str, triangles: Float[np.ndarray, "triangles 3 3"]
 ) -> Float[np.ndarray, "triangles 3"]:
     """The colour of each triangle, lighter where it faces the sun, on either side."""
-    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    one, other = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    normals = np.cross(one, other)
     lengths = np.maximum(np.linalg.norm(normals, axis=1), 1e-12)
     light = 0.55 + 0.45 * np.abs(normals @ (SUN / np.linalg.norm(SUN))) / lengths
     base = np.array([int(colour[at : at + 2], 16) for at in (1, 3, 5)]) / 255.0
