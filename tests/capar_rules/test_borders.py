@@ -21,6 +21,7 @@ from capar.model.facts import (
     Resting,
     Tag,
     Touching,
+    Travelled,
 )
 from capar_rules.borders.deflicker import steady
 from capar_rules.borders.numbering import by_object, overlapping, shared, undisturbed
@@ -213,6 +214,19 @@ def test_what_a_hand_brushes_as_it_lets_go_does_not_change_the_name_of_its_hold(
     assert names == ["Reach", "Touch", "MoveObj", "Touch", "TouchWith", "ResumePosture"]
     assert [each.name for each in beside.segments] == [*names[:5], "Withdraw", names[5]]
     assert beside.segments[4].features == alone.segments[4].features
+
+
+@pytest.mark.parametrize(("further_mm", "step"), [(3, "TouchWith"), (30, "MoveObj")])
+def test_what_settles_while_it_is_let_go_is_not_moved_once_more(further_mm: int, step: str) -> None:
+    ways = {50: 0, 100: 5, 280: 600, 320: 600 + further_mm}
+    (link,) = infer(
+        (*SCENE, Tag("shelf", "mobile"), *touches((50, 320)), Moving("mug", 100, 330),
+         *touches((280, 399), body="mug", other="shelf"),
+         *(Travelled("mug", frame, way, 0) for frame, way in ways.items())),
+        profile=profile(),
+    ).links  # fmt: skip
+    names = [each.name for each in link.segments]
+    assert names == ["Reach", "Touch", "MoveObjTo", step, "ResumePosture"]
 
 
 def test_it_can_be_switched_off_and_is_off_in_the_thesis() -> None:
