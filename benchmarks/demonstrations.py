@@ -362,7 +362,7 @@ def simulated(place: str, task: str) -> tuple[np.ndarray, np.ndarray, np.ndarray
     model, data = scene.model, mujoco.MjData(scene.model)
     body = model.body(BODIES[task]).id
     own = model.body_rootid[model.geom_bodyid] == model.body_rootid[body]
-    names = [model.body(each).name for each in model.geom_bodyid]
+    names = [model.body(number).name for number in model.geom_bodyid]
     gripper = np.array(["gripper" in name or "finger" in name for name in names])
     touched, places, turns = [], [], []
     for state in scene.states:
@@ -474,7 +474,7 @@ def judge(folder: Path, *, as_json: bool) -> None:
     print(f"lifted, opened, placed within {WITHIN_S} s of such a step: {done} of {len(results)}")
     print(f"names of all steps right: {right} of {len(results)} episodes")
     exact, ordered, others = (
-        sum(each[key] for each in results) for key in ("exact", "in_order", "beyond")
+        sum(episode[key] for episode in results) for key in ("exact", "in_order", "beyond")
     )
     calm = [each["exact"] for each in results if not each["policy"].endswith("noisy")]
     print(f"... no others than planned: {exact}, without noise {sum(calm)} of {len(calm)}")

@@ -451,7 +451,7 @@ class _Estimate:
             matrix[number, number] = 1.0 / self.prior.deviations[name]
             rest[number] = self.measures[name] - self.prior[name]
             rest[number] /= self.prior.deviations[name]
-        moves, turns = [_nominal(each) for each in longer], np.zeros(size)
+        moves, turns = [_nominal(body) for body in longer], np.zeros(size)
         nominal = _nominal(usual)
         for number, place in enumerate(self.targets):
             rows = slice(free + 3 * number, free + 3 * number + 3)
@@ -478,7 +478,7 @@ class _Estimate:
         """Change of every sensor's place with every measure, by place."""
         sites = {place: f"sensor_{place}" for place in self.mounts}
         base = human.sites(self.postures, sites.values())
-        moved = [mounted(each, self.mounts).sites(self.postures, sites.values()) for each in longer]
+        moved = [mounted(body, self.mounts).sites(self.postures, sites.values()) for body in longer]
         return {
             place: np.stack([(each[site][0] - base[site][0]) / DELTA_M for each in moved], axis=2)
             for place, site in sites.items()

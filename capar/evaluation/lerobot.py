@@ -80,14 +80,14 @@ def data_set_of(places: Iterable[str]) -> Path:
     """
     bundles = {find_place(place)[0]: place for place in places}
     documents = [open_bundle(place)[0] for place in bundles.values()]
-    for each in documents:
-        if each.from_s:
-            raise each.error(
+    for document in documents:
+        if document.from_s:
+            raise document.error(
                 "from_s", "labels count from an episode's first frame.", "Leave it out."
             )
-    files = [each for document in documents for each in document.files.values()]
+    files = [file for document in documents for file in document.files.values()]
     found = dict.fromkeys(
-        expanded(each, "path") for each in files if isinstance(each, MotionFile) and each.episode
+        expanded(file, "path") for file in files if isinstance(file, MotionFile) and file.episode
     )
     if len(found) != 1:
         problem = f"these captures are read from {' and '.join(map(str, found)) or 'none'}"

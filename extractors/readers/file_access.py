@@ -43,9 +43,9 @@ def neighbours(path: Path) -> str:
     """What the nearest folder of a missing file holds, and which of that may be meant."""
     while path.parent != path and not path.parent.is_dir():
         path = path.parent
-    names = sorted(each.name for each in path.parent.glob("[!.]*"))
+    names = sorted(entry.name for entry in path.parent.glob("[!.]*"))
     holds = f"{', '.join(names[:12]) or 'nothing'}{', ...' * (len(names) > 12)}"
-    meant = "".join(f" Did you mean {each!r}?" for each in get_close_matches(path.name, names, n=1))
+    meant = "".join(f" Did you mean {name!r}?" for name in get_close_matches(path.name, names, n=1))
     return f"The folder {path.parent} holds: {holds}.{meant}"
 
 

@@ -300,7 +300,7 @@ def _file_of(entry: Tracked, files: Files, key: str, name: str) -> str:
     }
     found = [file for file in names if name in names[file]]
     if not found:
-        if key == "body" and any(name in each.markers for each in files.values()):
+        if key == "body" and any(name in file.markers for file in files.values()):
             problem = f"{name!r} is a point, which does not turn."
             raise entry.error(key, problem, f'Write markers = ["{name}"] in place of body.')
         known = {each for group in names.values() for each in group}

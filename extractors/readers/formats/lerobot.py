@@ -59,7 +59,7 @@ def read(path: Path, options: Mapping[str, Any]) -> Recording:
     if not groups:
         raise _unmapped(path, features)
     stated = (group[key] for group in groups for key in NAMING if key in group)
-    wanted = list(dict.fromkeys(str(each).partition("[")[0] for each in stated))
+    wanted = list(dict.fromkeys(str(part).partition("[")[0] for part in stated))
     for name in wanted:
         if name not in features:
             raise UnknownNameError("feature", name, features, where=str(path))
@@ -96,7 +96,7 @@ def episodes(path: Path) -> list[str]:
         FileError: It is of another version, lists none, or pyarrow is not installed.
     """
     _info(path)
-    return [str(each["episode_index"]) for each in _listed(path)]
+    return [str(row["episode_index"]) for row in _listed(path)]
 
 
 def _info(path: Path) -> dict[str, Any]:
