@@ -12,6 +12,9 @@ from capar.model.errors import CaparError
 
 UNEXPECTED = "this failed for a reason that is a fault of capar: {}"
 
+#: After this long, work is stopped again whose end got lost in a finalizer [s].
+STOPPED_AGAIN_S = 0.05
+
 
 class Stopped(BaseException):
     """Raised inside of work that is to end; what it began to write is left out or removed."""
@@ -72,9 +75,19 @@ class Jobs:
         def report(what: str, share: float) -> None:
             self.show(f"{title}: {what}", share)
 
+        told_before = sys.unraisablehook
+
+        def lost(unraisable: "sys.UnraisableHookArgs") -> None:
+            if unraisable.exc_type is Stopped:
+                job = threading.current_thread()
+                threading.Timer(STOPPED_AGAIN_S, self._stop, [job]).start()
+            else:
+                told_before(unraisable)
+
         def run() -> None:
             message, result = "", None
             try:
+                sys.unraisablehook = lost
                 try:
                     result = work(report)
                 except Exception as error:
@@ -83,6 +96,7 @@ class Jobs:
                     self._stoppable = None
             except Stopped:
                 message = "stopped; nothing was kept"
+            sys.unraisablehook = told_before
             with self._lock:
                 self._title, self._stoppable = "", None
             self.show("", 1.0)
@@ -99,13 +113,18 @@ class Jobs:
             self._last.start()
 
     def stop(self) -> bool:
-        """End what is being done at its next line of Python; whether there was anything to end."""
+        """End what is being done at its next line of Python; whether there was anything to end.
+
+        Python drops what is raised in a finalizer, so that what is lost there is raised again.
+        """
+        return self._stop(self._stoppable)
+
+    def _stop(self, job: threading.Thread | None) -> bool:
         with self._lock:
-            thread = self._stoppable
-            if thread is None or thread.ident is None:
+            if job is None or job is not self._stoppable or job.ident is None:
                 return False
             ctypes.pythonapi.PyThreadState_SetAsyncExc(
-                ctypes.c_ulong(thread.ident), ctypes.py_object(Stopped)
+                ctypes.c_ulong(job.ident), ctypes.py_object(Stopped)
             )
             return True
 

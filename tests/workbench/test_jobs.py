@@ -37,6 +37,32 @@ def test_work_is_stopped_and_nothing_is_handed_on() -> None:
     assert not jobs.stop()
 
 
+def test_a_stop_that_a_finalizer_swallows_still_ends_the_work(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    collected, failed = threading.Event(), list[str]()
+
+    class Late:
+        def __del__(self) -> None:
+            collected.set()
+            while True:  # until the stop falls into it
+                time.sleep(0.01)
+
+    def work(report: object) -> None:
+        late = Late()
+        del late
+        while True:
+            time.sleep(0.01)
+
+    jobs = Jobs()
+    jobs.start("for ever", work, lambda _: None, failed.append)
+    collected.wait(5.0)
+    assert jobs.stop()
+    jobs.wait(5.0)
+    assert failed == ["stopped; nothing was kept"]
+    assert not capfd.readouterr().err
+
+
 def test_one_thing_is_done_at_a_time() -> None:
     free = threading.Event()
     jobs = Jobs()
