@@ -18,7 +18,7 @@ from capar.cli import app
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
 PAGES = [README, *sorted((ROOT / "docs").glob("*.md"))]
-PROSE = [*PAGES, ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("*/README.md"))]
+PROSE = [*PAGES, ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("[!.]*/README.md"))]
 WITH_COMMANDS = [page for page in PAGES if "```console" in page.read_text()]
 CAPAR = str(Path(sys.executable).parent / "capar")
 
